@@ -14,9 +14,9 @@ use super::formula::JudgedFormula;
 use super::fourier_series::WORKING;
 use super::radii_polynomial::{Correction, NotProved};
 use super::theorem::{correction, prove};
-use super::{Certificate, Certified, HIGHEST_HARMONIC, coordinate, formula};
+use super::{Certificate, Certified, HIGHEST_HARMONIC, coordinate, formula, law};
 use crate::decimal::neighbours;
-use crate::exact::ball::Balls;
+use crate::exact::ball::{Ball, Balls};
 use crate::exact::bound::Bound;
 use crate::exact::rational::from_f64;
 use crate::exact::{Integer, Rational};
@@ -78,6 +78,9 @@ pub enum NotCertified {
     /// A motion that the formula does not give.
     #[error(transparent)]
     Motion(#[from] NoMotion),
+    /// A formula that cannot be held against the motion.
+    #[error("the formula cannot be judged: it is {0}")]
+    Formula(&'static str),
     /// A motion with sines.
     #[error("the motion of the formula is none of cosines alone")]
     Sines,
@@ -127,6 +130,9 @@ impl NotCertified {
             Self::NoSteadyMotion => "`derive` with --at lists the steady motions; `response` finds those of a range",
             Self::OffCycle => "leave the amplitude out",
             Self::Law(_) => "without a range it is certified at one amplitude",
+            Self::Motion(NoMotion::NotReal | NoMotion::Numbers(_)) | Self::Formula(_) | Self::Sines => {
+                "--no-formula proves the motion alone: that it exists, and its frequency"
+            }
             Self::Start(_) => "give the amplitude as a decimal or a fraction, and an equilibrium that is one",
             Self::NoSeries(_) => {
                 "sums, products, powers, sin, cos, tan, sinh, cosh, tanh, exp, log and atan where they are smooth along the whole motion"
@@ -150,16 +156,51 @@ pub fn certify(
     solution: &Solution,
     at: &Values,
 ) -> Result<(Certificate, Certified), NotCertified> {
+    certified_motion(oscillator, solution, at, true)
+}
+
+/// A certificate of the motion that a formula is about, without the formula: it may have no value there.
+///
+/// # Errors
+/// [`NotCertified`].
+///
+/// ```
+/// use lindstedt::certificate::{certify_motion, check};
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let solution = solve(&pendulum, &Options { order: Some(2), ..Options::default() })?;
+/// // omega^2 = 1 - A^2/8 is negative there.
+/// let (certificate, certified) = certify_motion(&pendulum, &solution, &"A = 3".parse()?)?;
+/// assert!(certified.formula.is_none() && check(&certificate) == Ok(certified));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn certify_motion(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    at: &Values,
+) -> Result<(Certificate, Certified), NotCertified> {
+    certified_motion(oscillator, solution, at, false)
+}
+
+fn certified_motion(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    at: &Values,
+    with_formula: bool,
+) -> Result<(Certificate, Certified), NotCertified> {
     let question = Question::of(oscillator, solution, at)?;
-    let judged = judged(solution, at, BITS)?;
-    if !judged.sines.is_empty() {
+    let judged = match with_formula {
+        true => Some(judged(solution, at, BITS)?),
+        false => None,
+    };
+    if judged.as_ref().is_some_and(|formula| !formula.sines.is_empty()) {
         return Err(NotCertified::Sines);
     }
-    let samples = verify::motions(oscillator, solution, at)?
-        .ok_or(NoMotion::NotReal)?
-        .truth;
+    let samples = verify::true_motion(oscillator, solution, at)?;
     let (mu, harmonics) = from_samples(&samples, question.odd);
     let mut certificate = question.certificate(mu, &harmonics, judged);
+    certificate.well_formed_formula().map_err(NotCertified::Formula)?;
     // Many harmonics bring it near in few steps; how many a proof needs is another question.
     certificate.highest = (2 * harmonics.len()).clamp(15, HIGHEST_HARMONIC / 2) | 1;
     refine(&mut certificate, Bound::ZERO).map_err(|reason| not_proved(reason, certificate.block().len()))?;
@@ -223,7 +264,7 @@ impl Question {
         Ok(Self { force, start, odd })
     }
 
-    fn certificate(self, mu: f64, harmonics: &[f64], formula: JudgedFormula) -> Certificate {
+    fn certificate(self, mu: f64, harmonics: &[f64], formula: Option<JudgedFormula>) -> Certificate {
         Certificate {
             force: self.force,
             start: self.start,
@@ -236,7 +277,7 @@ impl Question {
             inverse: vec![],
             sigma: 0,
             claim: Rational::zero(),
-            formula: Some(formula),
+            formula,
         }
     }
 }
@@ -262,22 +303,34 @@ pub(super) fn judged(solution: &Solution, at: &Values, bits: usize) -> Result<Ju
     let sines: Vec<f64> = harmonics.clone().map(|k| displacement.sine(k).mean().0).collect();
     let length = sines.iter().rposition(|sine| *sine != 0.0).map_or(0, |last| last + 1);
     let cosines: Vec<f64> = harmonics.map(|k| displacement.cosine(k).mean().0).collect();
-    let frequency = units(motion.frequency(), bits);
-    Ok(unclaimed(solution, frequency, [&cosines, &sines[..length]], bits))
+    let mut formula = unclaimed([&cosines, &sines[..length]], bits);
+    (formula.law, formula.values) = law::of_frequency(solution, at);
+    formula.frequency = units(motion.frequency(), bits);
+    // Where the law, as text, can be evaluated, that is the formula; a double of it may have lost digits.
+    match law::frequency(&formula.law, &formula.values) {
+        Some(exact) if is_near(&exact, motion.frequency()) => {
+            formula.frequency = Balls { bits }.converted(&exact, WORKING).middle;
+        }
+        Some(_) => formula.law = solution.title(),
+        None => {}
+    }
+    Ok(formula)
 }
 
-/// A formula of which nothing is claimed yet, its cosine and sine coefficients in units.
-pub(super) fn unclaimed(
-    solution: &Solution,
-    frequency: Integer,
-    [cosines, sines]: [&[f64]; 2],
-    bits: usize,
-) -> JudgedFormula {
+/// Whether a ball is about a double.
+pub(super) fn is_near(exact: &Ball, double: f64) -> bool {
+    const AGREEMENT: f64 = 1e-9;
+    (WORKING.nearest(exact) - double).abs() <= AGREEMENT * double.abs()
+}
+
+/// A formula of which nothing is claimed yet, its cosine and sine coefficients in units; without a law, and without a frequency.
+pub(super) fn unclaimed([cosines, sines]: [&[f64]; 2], bits: usize) -> JudgedFormula {
     let in_units = |values: &[f64]| values.iter().map(|value| units(*value, bits)).collect();
     let nothing = || [Rational::zero(), Rational::zero()];
     JudgedFormula {
-        law: solution.formula(),
-        frequency,
+        law: String::new(),
+        values: Values::default(),
+        frequency: Integer::zero(),
         coefficients: in_units(cosines),
         sines: in_units(sines),
         deviation: nothing(),

@@ -12,15 +12,17 @@
 
 use std::f64::consts::PI;
 
-use num_traits::Zero as _;
+use num_traits::{Signed as _, Zero as _};
 
 use super::fourier_series::{FourierSeries, WORKING, sum_of_angles};
+use super::law;
 use super::radii_polynomial::{NotProved, Proof};
-use super::{Certificate, Certified, CheckError};
+use super::{Certificate, Certified, CheckError, HIGHEST_HARMONIC};
 use crate::exact::ball::{Ball, Balls};
 use crate::exact::bound::Bound;
 use crate::exact::rational::from_f64;
 use crate::exact::{Integer, Rational};
+use crate::values::Values;
 
 /// A number with everything that it may be.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,8 +76,11 @@ pub struct Range {
 /// A formula with numbers, and what is claimed of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedFormula {
-    /// The law, in words of whoever derived it.
+    /// The law as it was derived: `omega = ...` or `omega^2 = ...`, of a driven motion `x = ...` in t, with definitions of letters behind commas.
+    /// What is of another form is words, of which nothing is proved.
     pub law: String,
+    /// The values of the letters in the law.
+    pub values: Values,
     /// The angular frequency, an integer times `2^-bits` of the certificate.
     pub frequency: Integer,
     /// The cosine coefficients of the motion, likewise.
@@ -96,7 +101,7 @@ pub struct JudgedFormula {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Errors {
-    /// `max |X - X~|`, both at the same phase, in the unit of the coordinate.
+    /// `max |X - X~|`, both at the same phase, in the unit of the coordinate; of the nearest of the [copies](Certified::copies) of X.
     pub deviation: Range,
     /// `|omega - omega~|`.
     pub frequency: Range,
@@ -109,6 +114,33 @@ pub struct Errors {
 }
 
 impl JudgedFormula {
+    /// What does not fit together. Of a motion without a drive the frequency is positive, and the first harmonic there: with another sign, or
+    /// as that of half the frequency, the same formula would be held against the motion at another phase.
+    pub(super) fn well_formed(&self, is_driven: bool) -> Result<(), &'static str> {
+        let small = |integer: &Integer| integer.bits() <= 700;
+        let first = [&self.coefficients, &self.sines].map(|list| list.get(1).is_some_and(|first| !first.is_zero()));
+        let lists = [&self.coefficients, &self.sines];
+        let demands = [
+            (
+                lists.iter().all(|list| list.len() <= 2 * HIGHEST_HARMONIC),
+                "a formula of more than 800 harmonics",
+            ),
+            (
+                lists.into_iter().flatten().chain([&self.frequency]).all(small),
+                "a formula with a number of more than 200 digits",
+            ),
+            (
+                is_driven || self.frequency.is_positive(),
+                "a formula whose frequency is not positive",
+            ),
+            (is_driven || first != [false; 2], "a formula without a first harmonic"),
+        ];
+        match demands.into_iter().find(|(holds, _)| !holds) {
+            Some((_, reason)) => Err(reason),
+            None => Ok(()),
+        }
+    }
+
     /// The frequency, of units of `2^-bits`.
     pub(super) fn frequency_ball(&self, bits: usize) -> Ball {
         WORKING.dyadic(&self.frequency, bits)
@@ -123,11 +155,11 @@ impl JudgedFormula {
 
 /// A motion that is proved, against which a formula is held.
 pub(super) struct Truth<'a> {
-    /// The approximate motion.
-    pub(super) motion: &'a FourierSeries,
+    /// The approximate motion, and what the symmetries of its equation make of it: a formula is one for all of them.
+    pub(super) copies: &'a [FourierSeries],
     /// omega.
     pub(super) frequency: &'a Ball,
-    /// The true motion is so near.
+    /// The true motion is so near, and each of the others.
     pub(super) radius: Bound,
 }
 
@@ -143,25 +175,43 @@ pub(super) fn certified(certificate: &Certificate, proof: Proof) -> Result<Certi
     let frequency = frequency.ok_or(NotProved::TooLarge(proof.radius))?;
     let motion = certificate.motion();
     let truth = Truth {
-        motion: &motion,
+        copies: std::slice::from_ref(&motion),
         frequency: &frequency,
         radius: proof.radius,
     };
     let bits = certificate.bits;
+    let formula = certificate.formula.as_ref();
     let errors = |formula: &JudgedFormula| truth.errors(&formula.frequency_ball(bits), &formula.motion(bits));
     Ok(Certified {
         proof,
         frequency: Enclosure::of(&frequency),
         exponent: None,
         amplitude: None,
-        formula: certificate.formula.as_ref().map(errors),
+        copies: 1,
+        law_is_held: formula.is_some_and(|formula| law::hold(formula, bits) == Ok(true)),
+        formula: formula.map(errors),
     })
 }
 
 impl Truth<'_> {
-    /// `max |X - X~|`.
+    /// `max |X - X~|` of the nearest copy.
     fn deviation(&self, own_motion: &FourierSeries) -> Range {
-        let (lower, upper) = largest(&self.motion.difference(own_motion));
+        let apart = |copy: &FourierSeries| {
+            let difference = copy.difference(own_motion);
+            (below_mean(&difference), difference)
+        };
+        let mut differences: Vec<(f64, FourierSeries)> = self.copies.iter().map(apart).collect();
+        differences.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let (mut lower, mut upper) = (f64::INFINITY, Bound::UNKNOWN);
+        for (mean, difference) in &differences {
+            // No largest value is below the mean: this copy and those behind it are no nearer.
+            if *mean >= upper.value() {
+                break;
+            }
+            let (below, above) = largest(difference);
+            lower = lower.min(below);
+            upper = if above < upper { above } else { upper };
+        }
         Range {
             lower: (lower - self.radius.value()).next_down().max(0.0),
             upper: (upper + self.radius).value(),
@@ -215,6 +265,16 @@ fn apart(own: &Ball, truth: &Ball) -> (Range, Range) {
     (error, relative)
 }
 
+/// No more than the root of the mean square of a series.
+fn below_mean(series: &FourierSeries) -> f64 {
+    /// More than what the roundings of so short a sum make.
+    const ROUNDING: f64 = 1e-12;
+    let square = |ball: &Ball| WORKING.distance_from_zero(ball).max(0.0).powi(2);
+    let waves = series.cosines.iter().skip(1).chain(series.sines.iter().skip(1));
+    let mean = square(&series.cosine(0)) + 0.5 * waves.map(square).sum::<f64>();
+    (mean.sqrt() * (1.0 - ROUNDING) - series.tail.value()).max(0.0)
+}
+
 /// The largest size of a series, from below and from above.
 fn largest(series: &FourierSeries) -> (f64, Bound) {
     const BALLS: Balls = Balls { bits: 80 };
@@ -261,7 +321,7 @@ fn largest(series: &FourierSeries) -> (f64, Bound) {
 }
 
 /// Cosine and sine of the angles `pi j/points`, `j` below twice their number.
-fn waves(points: usize, balls: Balls) -> Vec<[Ball; 2]> {
+pub(super) fn waves(points: usize, balls: Balls) -> Vec<[Ball; 2]> {
     let step = WORKING.divided(&WORKING.pi(), u32::try_from(points).unwrap_or(u32::MAX));
     let unknown = || {
         let all = FourierSeries::exactly(vec![], vec![]).widened(Bound::exactly(1.0));

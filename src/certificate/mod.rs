@@ -23,23 +23,26 @@ mod force;
 mod formula;
 mod fourier_series;
 mod impact;
+mod law;
 mod radii_polynomial;
 mod theorem;
 mod validity;
 
 use num_traits::{Signed as _, Zero as _};
 
-pub use candidate::{NotCertified, certify};
-pub use damped::{DampedCertificate, Drive, certify_cycle, certify_driven, check_damped};
+pub use candidate::{NotCertified, certify, certify_motion};
+pub use damped::{DampedCertificate, Drive, certify_cycle, certify_cycle_motion, certify_driven, check_damped};
 pub use formula::{Enclosure, Errors, JudgedFormula, Range};
 pub use impact::{ImpactEnclosure, NotEnclosed, enclose_impact};
 pub use radii_polynomial::{NotProved, Proof};
 pub use validity::{Beyond, Validity, validity};
 
-use crate::decimal::decimal;
+use crate::decimal::{rounded_down, rounded_up};
 use crate::exact::ball::{Ball, Balls};
+use crate::exact::bound::Bound;
 use crate::exact::{Integer, Rational};
 use crate::expr::{Expr, ExprError};
+use crate::solution::AmplitudeConvention;
 use crate::symbol::Symbol;
 use fourier_series::{FourierSeries, WORKING};
 
@@ -98,6 +101,11 @@ pub struct Certified {
     pub exponent: Option<Enclosure>,
     /// Of a driven motion the amplitude of its own harmonic.
     pub amplitude: Option<Enclosure>,
+    /// How many motions the symmetries of the equation make of the proved one, itself among them: with a drive that of another whole number of its
+    /// periods later, of an equation that is its mirror image the mirror image. A formula is one for all of them alike.
+    pub copies: usize,
+    /// Whether the law of the formula was read as text, and gives the numbers that are judged: the frequency, of a driven motion all.
+    pub law_is_held: bool,
     /// Of the formula, where one is judged.
     pub formula: Option<Errors>,
 }
@@ -113,7 +121,7 @@ pub enum CheckError {
     #[error("not certified: {0}")]
     NotProved(NotProved),
     /// The motion is proved, and something of it is claimed to be smaller than what is proved.
-    #[error("not as claimed: {what} is proved to be {} at most, and less is claimed", decimal(*proved))]
+    #[error("not as claimed: {what} is proved to be {} at most, and less is claimed", rounded_up(*proved, 6))]
     ClaimedLess {
         /// Of which number.
         what: &'static str,
@@ -121,7 +129,7 @@ pub enum CheckError {
         proved: f64,
     },
     /// Likewise larger.
-    #[error("not as claimed: {what} is proved to be {} at least, and more is claimed", decimal(*proved))]
+    #[error("not as claimed: {what} is proved to be {} at least, and more is claimed", rounded_down(*proved, 6))]
     ClaimedMore {
         /// Of which number.
         what: &'static str,
@@ -223,9 +231,44 @@ impl Certificate {
             expressions: &[(&self.force, &[coordinate()])],
         };
         fits.of_numbers()?;
-        fits.of_inverse(self.block().len() + 1)
+        fits.of_inverse(self.block().len() + 1)?;
+        self.well_formed_formula()
+    }
+
+    /// What does not fit together in the formula, or with the motion that it is held against.
+    fn well_formed_formula(&self) -> Result<(), &'static str> {
+        let Some(formula) = &self.formula else { return Ok(()) };
+        formula.well_formed(false)?;
+        if formula.sines.iter().any(|sine| !sine.is_zero()) {
+            return Err("a formula with sines, of a motion that begins at rest");
+        }
+        // Half a period later the motion begins at its other turning point: the formula is of the same start.
+        let start = formula.motion(self.bits).at_zero();
+        let apart = WORKING.difference(&start, &WORKING.fraction(&self.start));
+        let size = formula.motion(self.bits).norm() * Bound::power_of_two(-ROUNDING_OF_START);
+        if WORKING.distance_from_zero(&apart) > size.value() {
+            return Err("a formula that begins elsewhere than the motion");
+        }
+        self.amplitude_of_law(formula)?;
+        law::hold(formula, self.bits).map(|_| ())
+    }
+
+    /// Whether the amplitude among the values of the law is that of the motion, about a place of rest.
+    fn amplitude_of_law(&self, formula: &JudgedFormula) -> Result<(), &'static str> {
+        let letter = AmplitudeConvention::Initial.symbol();
+        let amplitude = formula.values.iter().find(|(name, _)| *name == letter);
+        let Some((_, amplitude)) = amplitude else { return Ok(()) };
+        let place = &Expr::number(self.start.clone()) - amplitude;
+        let force = self.force.substitute(coordinate(), &place).ok();
+        match force.and_then(|force| law::number(&force)) {
+            Some(force) if WORKING.distance_from_zero(&force) <= 0.0 => Ok(()),
+            _ => Err("a law whose amplitude is not that of the motion"),
+        }
     }
 }
+
+/// The sum of the coefficients of a formula is its start up to so many binary digits of their size: they are doubles, of series that may cancel.
+const ROUNDING_OF_START: i32 = 20;
 
 /// What of a certificate may be too large, or may not fit together.
 struct Sizes<'a> {

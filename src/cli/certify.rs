@@ -6,6 +6,7 @@ use clap::Args;
 use lindstedt::certificate::{self, Beyond, Certified, DampedCertificate, NotCertified};
 use lindstedt::exact::Rational;
 use lindstedt::export::json::{self, CertificateDocument, DampedCertificateDocument};
+use lindstedt::export::printable_in_line;
 use lindstedt::expr::parse_expression;
 use lindstedt::report::{self, AnyCertificate, CertificateReport};
 use lindstedt::verify::Verdict;
@@ -29,6 +30,9 @@ pub struct Arguments {
     /// amplitude
     #[arg(long, value_name = "LOW:HIGH", value_parser = range)]
     range: Option<(Rational, Rational)>,
+    /// Prove the motion alone, and judge no formula: where that has no real value, say
+    #[arg(long, conflicts_with = "range")]
+    no_formula: bool,
     #[command(flatten)]
     pub common: Common,
 }
@@ -36,12 +40,16 @@ pub struct Arguments {
 #[derive(Args)]
 #[command(mut_arg("format", super::words_only))]
 #[command(mut_arg("plot", |plot| plot.hide(true)))]
+#[command(mut_arg("timeout", |timeout| timeout.help("Give up after so many seconds, 60 without it: a certificate may come from anybody")))]
 pub struct CheckArguments {
     /// A certificate, as `certify` writes it; - for standard input
     pub file: PathBuf,
     #[command(flatten)]
     pub common: Common,
 }
+
+/// How long a file may keep `check` busy where no time limit is given, in seconds.
+pub const LONGEST_CHECK: f64 = 60.0;
 
 /// A certificate of the most harmonics has so many bytes.
 const LARGEST_CERTIFICATE: usize = 16 << 20;
@@ -69,14 +77,25 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let tolerance = tolerance(&arguments.common);
     let question = (&solution, &values);
     if solution.limit_cycle.is_some() {
-        let proved = || certificate::certify_cycle(&oscillator, &solution, &values);
+        let proved = || match arguments.no_formula {
+            true => certificate::certify_cycle_motion(&oscillator, &solution, &values),
+            false => certificate::certify_cycle(&oscillator, &solution, &values),
+        };
         return without_amplitude(arguments, question, "a limit cycle", proved);
     }
     if solution.response.is_some() {
+        if arguments.no_formula {
+            return Err(Failure::Refused(
+                "--no-formula leaves nothing to find a driven motion by: of several it is the one near the formula's\n  help: leave --no-formula out; `response` finds the motions of a range in numbers".to_owned(),
+            ));
+        }
         let proved = || certificate::certify_driven(&oscillator, &solution, &values);
         return without_amplitude(arguments, question, "a driven motion", proved);
     }
-    let proved = certificate::certify(&oscillator, &solution, &values);
+    let proved = match arguments.no_formula {
+        true => certificate::certify_motion(&oscillator, &solution, &values),
+        false => certificate::certify(&oscillator, &solution, &values),
+    };
     let (certificate, certified) = proved.map_err(|error| refused(&error))?;
     let supervision = Supervision {
         interrupt: Interrupt::by(&STOP),
@@ -126,7 +145,10 @@ fn without_amplitude(
 pub fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
     without_picture(&arguments.common)?;
     let file = &arguments.file;
-    let refused = |reason: &dyn std::fmt::Display| Failure::Refused(format!("{}: {reason}", file.display()));
+    let refused = |reason: &dyn std::fmt::Display| {
+        let reason = printable_in_line(&reason.to_string());
+        Failure::Refused(format!("{}: {reason}", file.display()))
+    };
     let text = read_at_most(file, LARGEST_CERTIFICATE)?;
     let unread = |error: &dyn std::fmt::Display| refused(&format!("no certificate: {error}"));
     // Which of the two kinds it is; the rest is read when that is known.

@@ -5,23 +5,26 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use nalgebra::DMatrix;
-use num_traits::{Signed as _, ToPrimitive as _, Zero as _};
+use num_traits::{Signed as _, Zero as _};
 
 use super::super::candidate::{
     BITS, INVERSE_BITS, NOISE, NotCertified, blocks, claim_errors, claimed, few_units, inverted, iterate, judged,
     not_proved, shorten, subtract, unclaimed, units, weight, written_out,
 };
 use super::super::force::{is_even, is_odd};
-use super::super::fourier_series::{WORKING, Wave};
+use super::super::formula::JudgedFormula;
+use super::super::fourier_series::{FourierSeries, WORKING, Wave};
+use super::super::law;
 use super::super::radii_polynomial::NotProved;
 use super::super::{Certified, HIGHEST_HARMONIC, coordinate};
-use super::theorem::{correction, derivative_of_block, prove, waves_of_drive};
+use super::theorem::{correction, derivative_of_block, prove};
+use super::waves::{displacement, in_waves};
 use super::{DampedCertificate, Drive};
-use crate::exact::ball::Balls;
+use crate::exact::ball::{Ball, Balls};
 use crate::exact::bound::Bound;
+use crate::exact::rational::from_f64;
 use crate::exact::{Integer, Rational};
-use crate::expr::{Expr, ExprError, Function, Node};
-use crate::method::motion::NoMotion;
+use crate::expr::{Expr, ExprError};
 use crate::numeric::harmonics::{Harmonics, Transform};
 use crate::oscillator::{Oscillator, Parts};
 use crate::solution::Solution;
@@ -38,13 +41,32 @@ pub fn certify_cycle(
     solution: &Solution,
     at: &Values,
 ) -> Result<(DampedCertificate, Certified), NotCertified> {
+    certified_cycle(oscillator, solution, at, true)
+}
+
+/// A certificate of the limit cycle that a formula is about, without the formula: it may have no value there.
+///
+/// # Errors
+/// [`NotCertified`].
+pub fn certify_cycle_motion(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    at: &Values,
+) -> Result<(DampedCertificate, Certified), NotCertified> {
+    certified_cycle(oscillator, solution, at, false)
+}
+
+fn certified_cycle(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    at: &Values,
+    with_formula: bool,
+) -> Result<(DampedCertificate, Certified), NotCertified> {
     if at.get(solution.amplitude.symbol()).is_some() {
         return Err(NotCertified::OffCycle);
     }
     let [damping, force] = lienard(oscillator, at)?;
-    let samples = verify::motions(oscillator, solution, at)?
-        .ok_or(NoMotion::NotReal)?
-        .truth;
+    let samples = verify::true_motion(oscillator, solution, at)?;
     let (values, _) = at.split(&oscillator.parameters);
     let equilibrium = solution.equilibrium.substitute_all(&values)?;
     let odd = equilibrium.is_zero() && is_odd(&force, &[coordinate()])? && is_even(&damping, &[coordinate()])?;
@@ -54,7 +76,10 @@ pub fn certify_cycle(
         return Err(NotCertified::TooManyHarmonics(HIGHEST_HARMONIC));
     }
     let bits = digits(seen);
-    let formula = judged(solution, at, bits)?;
+    let formula = match with_formula {
+        true => Some(judged(solution, at, bits)?),
+        false => None,
+    };
     let coefficients = |values: &[f64]| values.iter().map(|value| units(*value, bits)).collect();
     let mut certificate = DampedCertificate {
         damping,
@@ -71,8 +96,9 @@ pub fn certify_cycle(
         inverse: vec![],
         sigma: 0,
         claim: Rational::zero(),
-        formula: Some(formula),
+        formula,
     };
+    certificate.well_formed_formula().map_err(NotCertified::Formula)?;
     let certified = proved_by_some_block(&mut certificate, seen)?;
     Ok((certificate, certified))
 }
@@ -115,7 +141,12 @@ pub fn certify_driven(
         |samples: &[verify::Sample]| -> Vec<f64> { samples[..samples.len() - 1].iter().map(|(_, x, _)| *x).collect() };
     let truth = harmonics_of(&places(&samples.truth));
     let seen = truth.cosines.len().max(truth.sines.len());
-    let (periods, harmonic) = (resonance.times_linear as usize, resonance.times_driving as usize);
+    let drive = Drive {
+        frequency,
+        periods: resonance.times_linear as usize,
+        harmonic: resonance.times_driving as usize,
+    };
+    let harmonic = drive.harmonic;
     let own = |harmonics: &Harmonics| {
         let part = |list: &[f64]| list.get(harmonic).copied().unwrap_or(0.0);
         part(&harmonics.cosines).hypot(part(&harmonics.sines))
@@ -129,19 +160,11 @@ pub fn certify_driven(
     }
     let bits = digits(seen);
     let coefficients = |values: &[f64]| values.iter().map(|value| units(*value, bits)).collect();
-    let waves = [&formula.cosines[..], &formula.sines];
-    let mut judged = unclaimed(solution, Integer::zero(), waves, bits);
-    if let Some(response) = &solution.response {
-        judged.law = format!("{} = {}", solution.coordinate(), response.motion);
-    }
+    let judged = judged_driven(solution, at, &formula, &drive, bits);
     let mut certificate = DampedCertificate {
         damping,
         force,
-        drive: Some(Drive {
-            frequency,
-            periods,
-            harmonic,
-        }),
+        drive: Some(drive),
         odd: false,
         bits,
         reciprocal: Integer::zero(),
@@ -164,6 +187,52 @@ pub fn certify_driven(
     certificate.highest = (3 * seen / 2).clamp(15, most(certificate.odd)) | 1;
     let certified = proved_by_some_block(&mut certificate, seen)?;
     Ok((certificate, certified))
+}
+
+/// The formula of a driven motion, with these harmonics. Where its displacement, as text, is that of one of its steady motions, the harmonics are
+/// those of the text to their last digits.
+fn judged_driven(solution: &Solution, at: &Values, harmonics: &Harmonics, drive: &Drive, bits: usize) -> JudgedFormula {
+    let mut judged = unclaimed([&harmonics.cosines, &harmonics.sines], bits);
+    judged.law = solution.title();
+    let (Some(response), Some(slow)) = (&solution.response, &solution.modulation) else {
+        return judged;
+    };
+    let coordinate = solution.coordinate().to_string();
+    let written = law::with_definitions(solution, &coordinate, &response.motion, |definition| {
+        definition.meaning.to_string()
+    });
+    for state in solution.steady_states(&|name| at.get(name)) {
+        let mut values = at.clone();
+        let number = |value: f64| Expr::number(from_f64(value).unwrap_or_default());
+        // The two letters of the slow equations have no values of their own.
+        let taken = [(slow.amplitude, state.amplitude), (slow.phase, state.phase)]
+            .into_iter()
+            .any(|(name, value)| values.insert(name, number(value)).is_err());
+        let values = law::values_in(&written, &values);
+        let Some(exact) = displacement(&written, &values, drive).filter(|_| !taken) else {
+            continue;
+        };
+        if is_near_all(&exact, harmonics) {
+            let in_units = |ball: &Ball| Balls { bits }.converted(ball, WORKING).middle;
+            judged.coefficients = exact.cosines.iter().map(in_units).collect();
+            judged.sines = exact.sines.iter().map(in_units).collect();
+            (judged.law, judged.values) = (written, values);
+            break;
+        }
+    }
+    judged
+}
+
+/// Whether the harmonics of a series are these, up to the rounding of doubles.
+fn is_near_all(exact: &FourierSeries, harmonics: &Harmonics) -> bool {
+    const ROUNDING: f64 = 1e-9;
+    let own = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(0.0);
+    let size = harmonics.cosines.iter().chain(&harmonics.sines);
+    let size = size.fold(0.0_f64, |most, value| most.max(value.abs()));
+    let near = |ball: &Ball, double: f64| (WORKING.nearest(ball) - double).abs() <= ROUNDING * size;
+    let last = exact.length().max(harmonics.cosines.len()).max(harmonics.sines.len());
+    (0..last)
+        .all(|k| near(&exact.cosine(k), own(&harmonics.cosines, k)) && near(&exact.sine(k), own(&harmonics.sines, k)))
 }
 
 /// The harmonics of samples of one period, the constant as it is, without those at the end that have no digits.
@@ -212,57 +281,6 @@ fn driven_parts(
     let damping = in_numbers(oscillator.force.differentiate(velocity)?)?;
     let force = in_numbers(oscillator.force.substitute(velocity, &Expr::zero())?)?;
     Ok([written_out(damping)?, force])
-}
-
-/// An expression with the letters of `cos(Omega t)` and `sin(Omega t)` in place of time.
-fn in_waves(expression: &Expr, time: Symbol, frequency: &Rational) -> Result<Expr, NotCertified> {
-    let own = waves_of_drive();
-    if let Some(taken) = own.iter().find(|name| expression.contains(**name)) {
-        return Err(NotCertified::NotDriven(taken.to_string()));
-    }
-    let other = |node: &Expr| NotCertified::NotDriven(node.to_string());
-    expression.fold(|node, children: &[Expr]| match node.node() {
-        Node::Function(Function::Sin | Function::Cos, _) if children.iter().any(|child| child.contains(time)) => {
-            let argument = children[0].expand()?;
-            let rate = argument.differentiate(time)?.expand()?;
-            let times = rate
-                .as_number()
-                .map(|rate| rate / frequency)
-                .filter(Rational::is_integer);
-            let times = times
-                .and_then(|times| times.to_integer().to_i32())
-                .ok_or_else(|| other(node))?;
-            let [cosine, sine] = multiple(own, times).ok_or_else(|| other(node))?;
-            // cos(k Omega t + b) and sin of the same, b all the rest.
-            let rest = argument.substitute(time, &Expr::zero())?;
-            let [cosine_of_rest, sine_of_rest] =
-                [Function::Cos, Function::Sin].map(|function| Expr::function(function, vec![rest.clone()]));
-            let (cosine_of_rest, sine_of_rest) = (cosine_of_rest?, sine_of_rest?);
-            Ok(match node.node() {
-                Node::Function(Function::Cos, _) => &(&cosine * &cosine_of_rest) - &(&sine * &sine_of_rest),
-                _ => &(&sine * &cosine_of_rest) + &(&cosine * &sine_of_rest),
-            })
-        }
-        // Time itself stays until a wave takes it up.
-        Node::Symbol(_) | Node::Number(_) | Node::Pi => Ok(node.clone()),
-        _ => Ok(node.with_children(children)?),
-    })
-}
-
-/// Cosine and sine of a whole multiple of an angle, in those of the angle.
-fn multiple([cosine, sine]: [Symbol; 2], times: i32) -> Option<[Expr; 2]> {
-    const MOST: u32 = 20;
-    let [one_cosine, one_sine] = [cosine, sine].map(Expr::from);
-    let mut found = [Expr::one(), Expr::zero()];
-    for _ in 0..times.unsigned_abs().min(MOST + 1) {
-        let [cosine, sine] = found;
-        found = [
-            &(&cosine * &one_cosine) - &(&sine * &one_sine),
-            &(&sine * &one_cosine) + &(&cosine * &one_sine),
-        ];
-    }
-    let [cosine, sine] = found;
-    (times.unsigned_abs() <= MOST).then(|| [cosine, if times < 0 { -sine } else { sine }])
 }
 
 /// Brings a certificate near, and finds the smallest block that proves it.

@@ -6,6 +6,7 @@
 
 mod candidate;
 mod theorem;
+mod waves;
 
 use num_traits::{Signed as _, Zero as _};
 
@@ -13,13 +14,13 @@ use super::force::along;
 use super::formula::{self, Enclosure, JudgedFormula, Truth};
 use super::fourier_series::{FourierSeries, WORKING};
 use super::radii_polynomial::{NotProved, Proof};
-use super::{Certified, CheckError, HIGHEST_HARMONIC, Sizes, coordinate};
+use super::{Certified, CheckError, HIGHEST_HARMONIC, Sizes, coordinate, law};
 use crate::exact::ball::Ball;
 use crate::exact::bound::Bound;
 use crate::exact::{Integer, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
-pub use candidate::{certify_cycle, certify_driven};
+pub use candidate::{certify_cycle, certify_cycle_motion, certify_driven};
 use theorem::Problem;
 
 /// The drive of a motion, whose period is a whole number of its own.
@@ -176,6 +177,10 @@ impl DampedCertificate {
             return Err("a block of more than 401 unknowns");
         }
         fits.of_inverse(unknowns)?;
+        if drive.is_none() && !self.cosines.get(1).is_some_and(|first| first.is_positive()) {
+            return Err("a first harmonic that is no positive cosine: half a period later the motion is the same");
+        }
+        self.well_formed_formula()?;
         let given = if self.drive.is_some() { 1 } else { 2 };
         match self.sines.iter().take(given).all(|sine| sine.is_zero()) {
             _ if self.drive.is_some() && !(self.reciprocal.is_zero() && self.sigma == 0) => {
@@ -184,6 +189,67 @@ impl DampedCertificate {
             true => Ok(()),
             false => Err("a sine of the first harmonic, or one of the constant"),
         }
+    }
+
+    /// What does not fit together in the formula.
+    fn well_formed_formula(&self) -> Result<(), &'static str> {
+        let Some(formula) = &self.formula else { return Ok(()) };
+        formula.well_formed(self.drive.is_some())?;
+        self.law_is_held(formula).map(|_| ())
+    }
+
+    /// Whether the law of the formula was read, and gives its numbers.
+    ///
+    /// # Errors
+    /// A law that gives others.
+    fn law_is_held(&self, formula: &JudgedFormula) -> Result<bool, &'static str> {
+        match &self.drive {
+            None => law::hold(formula, self.bits),
+            Some(drive) => {
+                let exact = waves::displacement(&formula.law, &formula.values, drive);
+                law::hold_displacement(exact.as_ref(), formula, self.bits)
+            }
+        }
+    }
+
+    /// What the symmetries of the equation make of a motion, itself first. With a drive of n periods that is the motion any number of periods
+    /// of the drive later. Of an equation that stays as it is with x turned, `-X` is one as well, and where it does so half a period of the drive
+    /// later, `-X` half a period later is; of a limit cycle that is `-X` half its own period later, whose first harmonic is a positive cosine too.
+    fn copies(&self, motion: &FourierSeries) -> Result<Vec<FourierSeries>, ExprError> {
+        let periods = self.drive.as_ref().map_or(1, |drive| drive.periods);
+        let [alone, with_drive] = self.mirrors()?;
+        // The angles pi j/n.
+        let angles = formula::waves(periods, WORKING);
+        let later = |j: usize| match j {
+            0 => motion.clone(),
+            _ => motion.turned(&angles[j]),
+        };
+        let mut copies: Vec<FourierSeries> = (0..periods).map(|m| later(2 * m)).collect();
+        if alone {
+            copies.extend((0..periods).map(|m| later(2 * m).scaled(-1)));
+        }
+        if with_drive {
+            copies.extend((0..periods).map(|m| later(2 * m + 1).scaled(-1)));
+        }
+        Ok(copies)
+    }
+
+    /// Whether the mirror image of the equation is the equation itself, and whether it is that half a period of the drive later, or of the
+    /// cycle; not those symmetries that a motion of odd harmonics has by itself.
+    fn mirrors(&self) -> Result<[bool; 2], ExprError> {
+        let problem = self.problem();
+        let [cosine, sine] = theorem::waves_of_drive();
+        let turned = |letters: &[Symbol]| problem.is_mirror_image(letters);
+        Ok(match &self.drive {
+            None => [false, !self.odd && turned(&[coordinate()])?],
+            Some(drive) => {
+                let is_own = drive.periods % 2 == 1;
+                [
+                    (!self.odd || is_own) && turned(&[coordinate()])?,
+                    (!self.odd || !is_own) && turned(&[coordinate(), cosine, sine])?,
+                ]
+            }
+        })
     }
 
     /// What follows from a proof.
@@ -198,13 +264,18 @@ impl DampedCertificate {
         let frequency = WORKING.quotient(&WORKING.integer(1), &reciprocal);
         let frequency = frequency.ok_or(NotProved::TooLarge(proof.radius))?;
         let motion = self.motion();
+        let formula = self.formula.as_ref();
+        // Only what is compared has copies to be looked at.
+        let copies = match formula {
+            Some(_) => self.copies(&motion)?,
+            None => vec![],
+        };
         let truth = Truth {
-            motion: &motion,
+            copies: &copies,
             frequency: &frequency,
             radius: proof.radius,
         };
-        let formula = self.formula.as_ref();
-        let (exponent, amplitude, formula) = match &self.drive {
+        let (exponent, amplitude, errors) = match &self.drive {
             None => {
                 let errors = |formula: &JudgedFormula| {
                     truth.errors(&formula.frequency_ball(self.bits), &turned(formula.motion(self.bits)))
@@ -228,7 +299,9 @@ impl DampedCertificate {
             frequency: Enclosure::of(&frequency),
             exponent,
             amplitude,
-            formula,
+            copies: copies.len().max(1),
+            law_is_held: formula.is_some_and(|formula| self.law_is_held(formula) == Ok(true)),
+            formula: errors,
         })
     }
 

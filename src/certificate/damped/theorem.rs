@@ -27,12 +27,17 @@
 //! radius R. Z2 bounds the second derivative of F at u = (q, v) and u' = (q', v'),
 //! `q (g v')' + q' (g v)' + 2 q q' h + 2 p h' (q v' + q' v) + p (g' v v')' + p^2 h'' v v'`, term by term.
 //!
-//! If `Z1 < 1`, `D > 0`, `r <= R`, `Z1 + Z2 r < 1` (`radii_polynomial.rs`), `r/sigma < p` and `r < |a_1|`, there is exactly one zero of F in
+//! If `Z1 < 1`, `D > 0`, `r <= R`, `Z1 + Z2 r < 1` (`radii_polynomial.rs`), `r/sigma < p` and `r < a_1`, there is exactly one zero of F in
 //! the ball of radius r: B is onto, hence its matrix is invertible, hence it is injective. `k X_k` is summable, for `phi(X)` is, and so is
 //! `k^2 X_k`: `X(t/p)` is a motion, at rest or of a part of the period only if a_1 were zero. DF is injective there. Were the second of
 //! Floquet's multipliers one too, a periodic solution of the variational equation, or one that grows like `t x'(t)`, would be in its kernel,
 //! with some of X' added where it has a sine of the first harmonic (X' has, for a_1 is not zero): so the motion is a limit cycle,
 //! and it attracts where `-[g(X)]_0`, by Liouville's formula its characteristic exponent, is negative.
+//!
+//! Where the motion is looked for among those of odd harmonics, all of this is said of them alone: there is exactly one zero of odd harmonics in
+//! the ball, and one with even harmonics may be as near. A limit cycle is isolated all the same: half a period and a turn of x are a map
+//! whose second multiplier is positive, and the root of that of the period; were that one, so were this, and the solution above would have
+//! odd harmonics.
 //!
 //! Of a driven equation, `x'' + g(x) x' + h(x, cos(Omega t), sin(Omega t)) = 0`, p is known, a whole number n of periods of the drive to a
 //! turn of theta: `p = n/Omega`. Then p is no unknown, b_1 is one, and all that belongs to p above is left out: its column, the first two terms
@@ -144,7 +149,12 @@ impl Problem<'_> {
         };
         let waves = [&self.motion.cosines, &self.motion.sines];
         let mut even = waves.into_iter().flat_map(|balls| balls.iter().step_by(2));
-        Ok(is_even(self.damping, &letters)? && is_odd(self.force, &letters)? && even.all(Ball::is_zero))
+        Ok(even.all(Ball::is_zero) && self.is_mirror_image(&letters)?)
+    }
+
+    /// Whether the equation is its own mirror image, all these letters with the other sign.
+    pub(super) fn is_mirror_image(&self, letters: &[Symbol]) -> Result<bool, ExprError> {
+        Ok(is_even(self.damping, letters)? && is_odd(self.force, letters)?)
     }
 
     /// Whether what is so near is no motion at rest, nor one of another period. Where p is known, nothing of that kind is claimed.
@@ -152,6 +162,7 @@ impl Problem<'_> {
         !self.is_free()
             || self.reciprocal.middle.is_positive()
                 && radius.over(sigma.value()).value() < WORKING.distance_from_zero(&self.reciprocal)
+                && self.motion.cosine(1).middle.is_positive()
                 && radius.value() < WORKING.distance_from_zero(&self.motion.cosine(1))
     }
 }

@@ -11,12 +11,16 @@ use super::number::expression;
 use super::schema::check_kind;
 use super::{JsonError, Kind, unexpected};
 use crate::certificate::{Certificate, HIGHEST_HARMONIC, JudgedFormula, MOST_BITS, coordinate};
-use crate::decimal::significant_fraction;
+use crate::decimal::{exact_decimal, neighbours, significant_fraction};
 use crate::exact::{Integer, Rational};
 use crate::expr::Expr;
+use crate::values::Values;
 
 /// A number has at most so many characters.
 const LONGEST_NUMBER: usize = 200;
+
+/// The values of letters have at most so many: that of a double as a fraction has some hundreds.
+const LONGEST_VALUES: usize = 10_000;
 
 /// A force has at most so many.
 const LONGEST_FORCE: usize = 2000;
@@ -86,8 +90,12 @@ pub enum ForceDocument {
 #[serde(deny_unknown_fields)]
 #[schemars(deny_unknown_fields, rename = "CertificateFormula")]
 pub struct FormulaDocument {
-    /// The law as it was derived, in words; nothing is checked against it.
+    /// The law as it was derived: `omega = ...` or `omega^2 = ...` with definitions of letters behind commas, which has to give `omega` at `values`
+    /// to its last digits. What is of another form is words: nothing is checked against them.
     pub law: String,
+    /// The values of the letters in the law, such as `A = 3/2, k = pi/5`; A is x(0) less a place of rest.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub values: String,
     /// omega~, an integer times 2^-bits.
     pub omega: String,
     /// The cosine coefficients of X~, likewise.
@@ -129,7 +137,7 @@ pub fn certificate(certificate: &Certificate) -> CertificateDocument {
         inverse: certificate.inverse.iter().map(|row| texts(row)).collect(),
         sigma_log2: certificate.sigma,
         nu: "1".to_owned(),
-        claim_r: short(&certificate.claim),
+        claim_r: claim(&certificate.claim),
         formula: certificate.formula.as_ref().map(formula),
     }
 }
@@ -139,20 +147,46 @@ pub(super) fn texts(numbers: &[Integer]) -> Vec<String> {
     numbers.iter().map(ToString::to_string).collect()
 }
 
-/// A decimal of three digits.
-pub(super) fn short(value: &Rational) -> String {
-    significant_fraction(value, 3)
+/// What is claimed from above: as it is, or with three digits, rounded up.
+pub(super) fn claim(value: &Rational) -> String {
+    short(value, 1)
+}
+
+/// What is claimed from below and from above.
+pub(super) fn claims([lower, upper]: &[Rational; 2]) -> [String; 2] {
+    [short(lower, 0), short(upper, 1)]
+}
+
+fn short(value: &Rational, side: usize) -> String {
+    exact_decimal(value).unwrap_or_else(|| significant_fraction(&neighbours(value, 3)[side], 3))
+}
+
+/// The values of letters as text.
+pub(super) fn values(values: &Values) -> String {
+    let equations: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    equations.join(", ")
+}
+
+/// The values of letters that a text says.
+pub(super) fn read_values(text: &str) -> Result<Values, JsonError> {
+    let values = Some(text).filter(|text| text.len() <= LONGEST_VALUES);
+    let values = values.and_then(|text| text.parse().ok());
+    values.map_or_else(
+        || unexpected("values", "names with numbers, such as `A = 3/2, k = pi/5`"),
+        Ok,
+    )
 }
 
 /// The document of a formula that is judged.
 fn formula(formula: &JudgedFormula) -> FormulaDocument {
     FormulaDocument {
         law: formula.law.clone(),
+        values: values(&formula.values),
         omega: formula.frequency.to_string(),
         c: texts(&formula.coefficients),
-        phase_error: formula.deviation.each_ref().map(short),
-        frequency_error: formula.frequency_error.each_ref().map(short),
-        drift: formula.drift.each_ref().map(short),
+        phase_error: claims(&formula.deviation),
+        frequency_error: claims(&formula.frequency_error),
+        drift: claims(&formula.drift),
     }
 }
 
@@ -239,6 +273,7 @@ impl FormulaDocument {
     fn read(&self) -> Result<JudgedFormula, JsonError> {
         Ok(JudgedFormula {
             law: self.law.clone(),
+            values: read_values(&self.values)?,
             frequency: integer(&self.omega, "omega")?,
             coefficients: integers(&self.c, "formula.c")?,
             sines: vec![],
@@ -288,12 +323,14 @@ pub(super) fn integers(texts: &[String], key: &str) -> Result<Vec<Integer>, Json
 }
 
 pub(super) fn integer(text: &str, key: &str) -> Result<Integer, JsonError> {
-    let number = text.parse().ok().filter(|_| text.len() <= LONGEST_NUMBER);
+    let number = Some(text).filter(|text| text.len() <= LONGEST_NUMBER);
+    let number = number.and_then(|text| text.parse().ok());
     number.map_or_else(|| unexpected(key, "integers of at most 200 characters"), Ok)
 }
 
 pub(super) fn fraction(text: &str, key: &str) -> Result<Rational, JsonError> {
-    let number = text.parse().ok().filter(|_| text.len() <= LONGEST_NUMBER);
+    let number = Some(text).filter(|text| text.len() <= LONGEST_NUMBER);
+    let number = number.and_then(|text| text.parse().ok());
     number.map_or_else(|| unexpected(key, "a fraction of at most 200 characters"), Ok)
 }
 
@@ -302,10 +339,13 @@ pub(super) fn decimal(text: &str, key: &str) -> Result<Rational, JsonError> {
     const EXPECTED: &str = "a decimal such as `2.5e-33`, not negative";
     /// No double is smaller, and none larger.
     const EXPONENTS: std::ops::RangeInclusive<i32> = -400..=400;
+    if text.len() > LONGEST_NUMBER {
+        return unexpected(key, EXPECTED);
+    }
     let (digits, exponent) = text.split_once('e').unwrap_or((text, "0"));
     let (whole, decimals) = digits.split_once('.').unwrap_or((digits, ""));
     let exponent = exponent.parse().ok().filter(|exponent| EXPONENTS.contains(exponent));
-    let plain = text.len() <= LONGEST_NUMBER && (whole.to_owned() + decimals).bytes().all(|byte| byte.is_ascii_digit());
+    let plain = (whole.to_owned() + decimals).bytes().all(|byte| byte.is_ascii_digit());
     let count: Option<Integer> = (whole.to_owned() + decimals)
         .parse()
         .ok()

@@ -6,7 +6,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::certificate::{
-    ForceDocument, check_sizes, decimal, force, fraction, integer, integers, matrix, range, short, texts,
+    ForceDocument, check_sizes, claim, claims, decimal, force, fraction, integer, integers, matrix, range, read_values,
+    texts, values,
 };
 use super::schema::check_kind;
 use super::{JsonError, Kind, unexpected};
@@ -39,7 +40,7 @@ pub struct DampedCertificateDocument {
     /// What drives the motion; not there for a limit cycle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive: Option<DriveDocument>,
-    /// Whether g is even, h odd and the motion of odd harmonics alone, and so the block; with a drive h is odd in x and in what of c and s
+    /// Whether g is even, h odd and the motion of odd harmonics alone, and so the block, and the only one within claim_r among those; with a drive h is odd in x and in what of c and s
     /// changes its sign after half a period of the motion.
     pub odd: bool,
     /// `p`, `c`, `s` and the numbers of the formula are integers times 2^-bits; at most 224.
@@ -47,7 +48,7 @@ pub struct DampedCertificateDocument {
     /// The approximate 1/omega; not there with a drive, n/Omega exactly.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub p: Option<String>,
-    /// The approximate cosine coefficients of the motion, that of the constant first.
+    /// The approximate cosine coefficients of the motion, that of the constant first; of a limit cycle that of the first harmonic is positive.
     pub c: Vec<String>,
     /// The approximate sine coefficients by harmonic; that of the constant is 0, and of a limit cycle that of the first harmonic
     /// too.
@@ -68,7 +69,7 @@ pub struct DampedCertificateDocument {
     /// The weight of a harmonic from one to the next; 1.
     #[schemars(extend("const" = "1"))]
     pub nu: String,
-    /// The radius that is claimed: the true p, c and s are so near in the norm.
+    /// The radius that is claimed: there is exactly one motion whose p, c and s are so near in the norm, where `odd` exactly one of odd harmonics.
     pub claim_r: String,
     /// The formula that is judged, of a limit cycle turned until its first harmonic is a positive cosine; null where none is.
     pub formula: Option<DampedFormulaDocument>,
@@ -94,8 +95,13 @@ pub struct DriveDocument {
 #[serde(deny_unknown_fields)]
 #[schemars(deny_unknown_fields, rename = "CertificateFormulaOfCycle")]
 pub struct DampedFormulaDocument {
-    /// The law as it was derived, in words; nothing is checked against it.
+    /// The law as it was derived: of a cycle `omega = ...` or `omega^2 = ...`, with a drive `x = ...` in t, with definitions of letters behind
+    /// commas; it has to give `omega`, with a drive `c` and `s`, at `values` to the last digits. What is of another form is words: nothing is
+    /// checked against them.
     pub law: String,
+    /// The values of the letters in the law.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub values: String,
     /// omega~, an integer times 2^-bits; not there with a drive.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub omega: Option<String>,
@@ -103,7 +109,9 @@ pub struct DampedFormulaDocument {
     pub c: Vec<String>,
     /// Its sine coefficients by harmonic, likewise.
     pub s: Vec<String>,
-    /// max |X - X~|, of a limit cycle X~ turned until its first harmonic is a positive cosine, in the unit of x.
+    /// max |X - X~|, in the unit of x, X~ of a limit cycle turned until its first harmonic is a positive cosine; of the nearest of the motions
+    /// that follow from X by symmetries of the equation: with a drive any number of its periods later, of an equation that is its own
+    /// mirror image -X too.
     pub phase_error: [String; 2],
     /// |omega - omega~|; not there with a drive.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -154,7 +162,7 @@ pub fn damped_certificate(certificate: &DampedCertificate) -> DampedCertificateD
         inverse: certificate.inverse.iter().map(|row| texts(row)).collect(),
         sigma_log2: certificate.sigma,
         nu: "1".to_owned(),
-        claim_r: short(&certificate.claim),
+        claim_r: claim(&certificate.claim),
         formula: certificate
             .formula
             .as_ref()
@@ -163,16 +171,16 @@ pub fn damped_certificate(certificate: &DampedCertificate) -> DampedCertificateD
 }
 
 fn formula(formula: &JudgedFormula, is_driven: bool) -> DampedFormulaDocument {
-    let both = |claims: &[Rational; 2]| claims.each_ref().map(short);
     DampedFormulaDocument {
         law: formula.law.clone(),
+        values: values(&formula.values),
         omega: (!is_driven).then(|| formula.frequency.to_string()),
         c: texts(&formula.coefficients),
         s: texts(&formula.sines),
-        phase_error: both(&formula.deviation),
-        frequency_error: (!is_driven).then(|| both(&formula.frequency_error)),
-        drift: (!is_driven).then(|| both(&formula.drift)),
-        amplitude_error: is_driven.then(|| both(&formula.amplitude_error)),
+        phase_error: claims(&formula.deviation),
+        frequency_error: (!is_driven).then(|| claims(&formula.frequency_error)),
+        drift: (!is_driven).then(|| claims(&formula.drift)),
+        amplitude_error: is_driven.then(|| claims(&formula.amplitude_error)),
     }
 }
 
@@ -195,6 +203,7 @@ impl DampedFormulaDocument {
         };
         Ok(JudgedFormula {
             law: self.law.clone(),
+            values: read_values(&self.values)?,
             frequency: integer(self.omega.as_deref().unwrap_or("0"), "omega")?,
             coefficients: integers(&self.c, "formula.c")?,
             sines: integers(&self.s, "formula.s")?,

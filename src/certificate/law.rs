@@ -1,0 +1,183 @@
+//! The law of a formula as text, held against its numbers.
+//!
+//! In: `omega^2 = 1 - A^2/8`, with definitions of other letters behind commas, and the values of the letters. Out: the number that it
+//! gives, in balls where every function of it has a value there, else to twelve digits. What is not of this form is words, of which
+//! nothing is said.
+
+use std::collections::BTreeMap;
+
+use super::force::along;
+use super::formula::JudgedFormula;
+use super::fourier_series::{FourierSeries, WORKING};
+use crate::exact::ball::Ball;
+use crate::exact::bound::Bound;
+use crate::exact::rational::from_f64;
+use crate::expr::{Expr, parse_expression};
+use crate::solution::law::Shown;
+use crate::solution::{Definition, Solution};
+use crate::symbol::Symbol;
+use crate::values::Values;
+
+/// A longer text is words.
+const LONGEST: usize = 20_000;
+
+/// With fewer binary digits behind the point the numbers of a formula do not tell one law from another.
+const FEWEST_BITS: usize = 40;
+
+/// The law of the frequency as text, and the values of the letters in it.
+pub(super) fn of_frequency(solution: &Solution, at: &Values) -> (String, Values) {
+    // Rounded coefficients are printed with six digits: here all of them are needed.
+    let exactly = match solution.law.in_one_line() {
+        _ if !solution.numerical || solution.slow().is_some() => None,
+        Shown::Squared(law) => Some(("omega^2", Expr::from(law))),
+        Shown::Frequency(law) => Some(("omega", Expr::from(law))),
+        Shown::Closed(form) => Some((form.name(), form.value.clone())),
+        _ => None,
+    };
+    let law = match exactly {
+        Some((name, value)) => with_definitions(solution, name, &value, |definition| definition.meaning.to_string()),
+        None => solution.formula(),
+    };
+    let values = values_in(&law, at);
+    (law, values)
+}
+
+/// An equation of an answer with the definitions that its right side needs.
+pub(super) fn with_definitions(
+    solution: &Solution,
+    name: &str,
+    value: &Expr,
+    meaning: impl Fn(&Definition) -> String,
+) -> String {
+    let definitions = solution.definitions_behind(value.symbols()).into_iter();
+    let definitions = definitions.map(|definition| format!(", {} = {}", definition.symbol, meaning(definition)));
+    std::iter::once(format!("{name} = {value}"))
+        .chain(definitions)
+        .collect()
+}
+
+/// Those of the values whose letters stand in a law; none where it is words.
+pub(super) fn values_in(law: &str, at: &Values) -> Values {
+    let letters = read(law).map(|(_, value)| value.symbols()).unwrap_or_default();
+    at.split(&letters.into_iter().collect::<Vec<Symbol>>())
+        .0
+        .into_iter()
+        .fold(Values::default(), |mut values, (name, value)| {
+            // A value is one.
+            let _ = values.insert(name, value);
+            values
+        })
+}
+
+/// The left side of a law, and its right side with the definitions put in.
+fn read(law: &str) -> Option<(String, Expr)> {
+    if law.len() > LONGEST {
+        return None;
+    }
+    let mut equations = vec![];
+    for equation in equations_of(law) {
+        let (name, value) = equation.split_once('=')?;
+        equations.push((name.trim().to_owned(), parse_expression(value).ok()?));
+    }
+    let mut equations = equations.into_iter();
+    let (name, mut value) = equations.next()?;
+    // A definition may use those before it.
+    for (name, meaning) in equations.rev() {
+        let symbol = parse_expression(&name).ok()?.as_symbol()?;
+        value = value.substitute(symbol, &meaning).ok()?;
+    }
+    Some((name, value))
+}
+
+/// The parts between the commas that are in no parentheses.
+fn equations_of(law: &str) -> Vec<&str> {
+    let (mut depth, mut begin, mut parts) = (0_i64, 0, vec![]);
+    for (place, letter) in law.char_indices() {
+        match letter {
+            '(' => depth += 1,
+            ')' => depth -= 1,
+            ',' if depth == 0 => {
+                parts.push(&law[begin..place]);
+                begin = place + 1;
+            }
+            _ => {}
+        }
+    }
+    parts.push(&law[begin..]);
+    parts
+}
+
+/// The left side of a law, and its right side with the definitions and the values put in; `None` of words.
+pub(super) fn with_values(law: &str, values: &Values) -> Option<(String, Expr)> {
+    let (name, value) = read(law)?;
+    let values: BTreeMap<Symbol, Expr> = values.iter().map(|(name, value)| (name, value.clone())).collect();
+    Some((name, value.substitute_all(&values).ok()?))
+}
+
+/// omega by the law of a frequency; `None` of words, and where it has no positive value.
+pub(super) fn frequency(law: &str, values: &Values) -> Option<Ball> {
+    let (name, value) = with_values(law, values)?;
+    let value = number(&value)?;
+    match name.as_str() {
+        "omega" => Some(value),
+        "omega^2" => WORKING.root(&value, 2),
+        _ => None,
+    }
+}
+
+/// The number that an expression without letters is.
+pub(super) fn number(expression: &Expr) -> Option<Ball> {
+    /// How good doubles of functions that have no value in balls are, relative to their size.
+    const ROUNDING: f64 = 1e-12;
+    let nothing = FourierSeries::constant(Ball::zero());
+    if expression.symbols().is_empty()
+        && let Ok(series) = along(expression, &nothing)
+    {
+        return Some(series.at_zero());
+    }
+    let double = expression.evaluate(&BTreeMap::new()).ok()?;
+    let mut ball = WORKING.fraction(&from_f64(double)?);
+    ball.radius += Bound::of_nearest(ROUNDING * double.abs());
+    Some(ball)
+}
+
+/// Whether the law was read, and gives the frequency of the formula to its last digits.
+///
+/// # Errors
+/// A law that gives another one.
+pub(super) fn hold(formula: &JudgedFormula, bits: usize) -> Result<bool, &'static str> {
+    let exact = frequency(&formula.law, &formula.values).filter(|_| bits >= FEWEST_BITS);
+    let Some(exact) = exact else { return Ok(false) };
+    match is_rounded(&exact, &formula.frequency_ball(bits), bits) {
+        true => Ok(true),
+        false => Err("a formula whose law, at its values, gives another frequency than its numbers"),
+    }
+}
+
+/// Whether the law of a displacement gives the coefficients of the formula to their last digits.
+///
+/// # Errors
+/// A law that gives others.
+pub(super) fn hold_displacement(
+    exact: Option<&FourierSeries>,
+    formula: &JudgedFormula,
+    bits: usize,
+) -> Result<bool, &'static str> {
+    let unit = Bound::power_of_two(-(bits as i32));
+    let Some(exact) = exact.filter(|exact| bits >= FEWEST_BITS && exact.tail <= unit) else {
+        return Ok(false);
+    };
+    let own = formula.motion(bits);
+    let agree =
+        |k: usize| is_rounded(&exact.cosine(k), &own.cosine(k), bits) && is_rounded(&exact.sine(k), &own.sine(k), bits);
+    match (0..exact.length().max(own.length())).all(agree) {
+        true => Ok(true),
+        false => Err("a formula whose law, at its values, gives another motion than its numbers"),
+    }
+}
+
+/// Whether a number is one of a ball, rounded to so many binary digits.
+fn is_rounded(exact: &Ball, number: &Ball, bits: usize) -> bool {
+    let apart = WORKING.difference(exact, number);
+    WORKING.distance_from_zero(&apart) <= 2.0_f64.powi(1 - bits as i32)
+}

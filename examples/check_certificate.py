@@ -1,21 +1,89 @@
 """Checks a certificate of `lindstedt certify` in whole numbers alone: python3 check_certificate.py FILE
 
-A second program for the same theorem (docs/certificates.md), of forces that are polynomials or sin. A number is a pair (m, r) of
-integers, all reals within r of m, in units of 2^-P; a series is a list of cosine coefficients and the norm of what is not in it.
-Prints the radius that is proved, and omega from below and from above, or says which inequality does not hold."""
+A second program for the same theorems (docs/certificates.md), of motions that conserve energy, limit cycles and driven motions, whose
+equations have polynomials, sin and cos. A number is a pair (m, r) of integers, all reals within r of m, in units of 2^-P; a
+series is a list of cosine coefficients, one of sine coefficients, and the norm of what is in neither. Prints what is proved, from below
+and from above, after every claim of the file has been held against it, or says which inequality or claim does not hold."""
+import heapq
 import json
+import re
 import sys
+import time
 from fractions import Fraction
 from math import isqrt
 
 P = 256                                     # binary digits behind the point
 ONE = 1 << P
+ZERO = (0, 0)
+SIZES = {"file": 16 << 20, "number": 200, "force": 2000, "list": 800, "block": 402}
+LONGEST = 1600                              # no series has more harmonics: what is beyond is a part of its tail
+SECONDS = 120                               # a file may come from anybody
+MOTION, CYCLE, DRIVEN = "x''+f(x)=0", "x''+g(x)*x'+h(x)=0", "x''+g(x)*x'+h(x,c,s)=0"
+begun = time.monotonic()
+
+
+class NotProved(Exception):
+    pass
 
 
 def demand(holds, what):
     if not holds:
-        sys.exit(f"not proved: {what}")
+        raise NotProved(what)
 
+
+# Numbers: everything is looked at before it is read, so that no text of any length is converted.
+
+def of_form(pattern, text, what):
+    demand(isinstance(text, str) and len(text) <= SIZES["number"] and re.fullmatch(pattern, text, re.ASCII), what)
+    return text
+
+
+def integer(text, what):
+    return int(of_form(r"[+-]?\d+", text, f"an integer in {what}"))
+
+
+def fraction(text, what):
+    top, _, bottom = of_form(r"[+-]?\d+(/\d+)?", text, f"a fraction in {what}").partition("/")
+    demand(bottom == "" or int(bottom) != 0, f"a fraction in {what}")
+    return Fraction(int(top), int(bottom or 1))
+
+
+def claim(text, what):                      # a decimal, 2.5e-33
+    form = of_form(r"\d+(\.\d*)?(e[+-]?\d{1,3})?", text, f"a decimal in {what}")
+    digits, _, exponent = form.partition("e")
+    whole, _, decimals = digits.partition(".")
+    exponent = int(exponent or 0)
+    demand(abs(exponent) <= 400, f"a decimal in {what}")
+    return Fraction(int(whole + decimals)) * Fraction(10) ** (exponent - len(decimals))
+
+
+def whole(value, low, high, what):
+    demand(type(value) is int and low <= value <= high, f"a whole number from {low} to {high} in {what}")
+    return value
+
+
+def integers(texts, what):
+    demand(isinstance(texts, list) and len(texts) <= SIZES["list"], f"at most {SIZES['list']} numbers in {what}")
+    return [integer(text, what) for text in texts]
+
+
+def keys(value, needed, optional, what):
+    demand(isinstance(value, dict), f"an object in {what}")
+    missing, more = set(needed) - set(value), set(value) - set(needed) - set(optional)
+    demand(not missing and not more, f"the keys of {what}")
+
+
+def no_number(_):
+    raise NotProved("a number that no certificate has")
+
+
+def unique(pairs):
+    names = [name for name, _ in pairs]
+    demand(len(set(names)) == len(names), "a key twice")
+    return dict(pairs)
+
+
+# Balls.
 
 def up(a, b):                               # a/b, rounded up
     return -(-a // b)
@@ -27,53 +95,152 @@ def number(x):                              # a fraction
     return m, 0 if m * x.denominator == x.numerator * ONE else 1
 
 
+def dyadic(units, bits):
+    return (units << P - bits, 0)
+
+
 def add(a, b, sign=1):
     return a[0] + sign * b[0], a[1] + b[1]
 
 
 def mul(a, b):
-    m = a[0] * b[0] >> P
+    if a == ZERO or b == ZERO:
+        return ZERO
     r = abs(a[0]) * b[1] + abs(b[0]) * a[1] + a[1] * b[1]
-    return m, up(r, ONE) + 1 if a != (0, 0) and b != (0, 0) else 0
+    return a[0] * b[0] >> P, up(r, ONE) + 1
+
+
+def total(balls):
+    balls = list(balls)
+    return sum(m for m, _ in balls), sum(r for _, r in balls)
+
+
+def scale(a, n):                            # by an integer
+    return a[0] * n, a[1] * abs(n)
 
 
 def over(a, n):                             # by a positive integer
-    return a[0] // n, up(a[1], n) + 1 if a != (0, 0) else 0
+    return (a[0] // n, up(a[1], n) + 1) if a != ZERO else ZERO
 
 
 def size(a):
     return abs(a[0]) + a[1]
 
 
+def least(a):                               # no number of the ball is nearer to zero
+    return max(0, abs(a[0]) - a[1])
+
+
+def quotient(a, b):
+    demand(least(b) > 0, "a division by what may be zero")
+    m = (a[0] << P) // b[0]
+    return m, up(ONE * a[1] + (abs(m) + 1) * b[1], least(b)) + 1
+
+
+def root(a):                                # of a positive number
+    low, high = a[0] - a[1], a[0] + a[1]
+    demand(low > 0, "a root of what may not be positive")
+    low, high = isqrt(low << P), isqrt(high << P) + 1
+    return (low + high) // 2, up(high - low, 2) + 1
+
+
+# Series (cosines, sines, tail): sum a_k cos(k theta) + b_k sin(k theta) + h, |h| in the norm at most tail. b_0 is zero.
+
 def at(u, k):
-    return u[0][k] if k < len(u[0]) else (0, 0)
+    return u[k] if k < len(u) else ZERO
+
+
+def coefficient(u, wave):
+    return at(u[wave[0]], wave[1])
+
+
+def trimmed(c, s, tail):
+    c, s = list(c), list(s)
+    for part in (c, s):
+        while part and (size(part[-1]) < ONE >> 120 or len(part) > LONGEST):
+            tail += size(part.pop())
+    return c, s, tail
+
+
+def last(u):                                # its last harmonic
+    return max(len(u[0]), len(u[1]), 1) - 1
+
+
+def finite(u):                              # the norm without the tail
+    return sum(map(size, u[0])) + sum(map(size, u[1]))
 
 
 def norm(u):
-    return sum(map(size, u[0])) + u[1]
+    return finite(u) + u[2]
 
 
 def plus(u, v, sign=1):
-    return [add(at(u, k), at(v, k), sign) for k in range(max(len(u[0]), len(v[0])))], u[1] + v[1]
+    c, s = ([add(at(a, k), at(b, k), sign) for k in range(max(len(a), len(b)))] for a, b in zip(u[:2], v[:2]))
+    return c, s, u[2] + v[2]
 
 
-def times(u, v):
-    doubled = [(0, 0)] * (len(u[0]) + len(v[0]))
-    for i, a in enumerate(u[0]):
-        for j, b in enumerate(v[0]):
-            if a != (0, 0) and b != (0, 0):
-                c = mul(a, b)
-                doubled[i + j] = add(doubled[i + j], c)
-                doubled[abs(i - j)] = add(doubled[abs(i - j)], c)
-    tail = up(u[1] * norm(v) + v[1] * norm(u), ONE)
-    series = [over(c, 2) for c in doubled]
-    while series and size(series[-1]) < ONE >> 120:
-        tail += size(series.pop())
-    return series, tail
+def mapped(u, change):
+    return [change(a) for a in u[0]], [change(b) for b in u[1]], u[2]
+
+
+def minus(u):
+    return mapped(u, lambda a: (-a[0], a[1]))
+
+
+def shrunk(u, n):                           # by a positive integer
+    c, s, tail = mapped(u, lambda a: over(a, n))
+    return c, s, up(tail, n)
+
+
+def times(u, v, whole_length=False):
+    """cos i cos j = (cos(i+j) + cos(i-j))/2, sin i sin j = (cos(i-j) - cos(i+j))/2, sin i cos j = (sin(i+j) + sin(i-j))/2."""
+    demand(time.monotonic() < begun + SECONDS, f"it takes longer than {SECONDS} s")
+    length = last(u) + last(v) + 1
+    c, s = [[0, 0] for _ in range(length)], [[0, 0] for _ in range(length)]
+
+    def put(where, k, m, r, sign):
+        if k < 0:                           # of sines: sin(-k) = -sin(k)
+            k, sign = -k, -sign
+        where[k][0] += sign * m
+        where[k][1] += r
+
+    for kind_u, part_u in enumerate(u[:2]):
+        for i, a in enumerate(part_u):
+            if a == ZERO:
+                continue
+            for kind_v, part_v in enumerate(v[:2]):
+                for j, b in enumerate(part_v):
+                    if b == ZERO:
+                        continue
+                    m = a[0] * b[0]
+                    r = abs(a[0]) * b[1] + abs(b[0]) * a[1] + a[1] * b[1]
+                    if kind_u == kind_v:
+                        put(c, i + j, m, r, -1 if kind_u else 1)
+                        put(c, abs(i - j), m, r, 1)
+                    else:
+                        apart = i - j if kind_u else j - i
+                        put(s, i + j, m, r, 1)
+                        if apart:
+                            put(s, apart, m, r, 1)
+    # Twice the sum, in units of 2^-2P.
+    halved = lambda t: (t[0] >> P + 1, up(t[1], 2 * ONE) + 1) if t != [0, 0] else ZERO
+    tail = up(u[2] * norm(v) + v[2] * finite(u), ONE)
+    product = [halved(t) for t in c], [ZERO] + [halved(t) for t in s[1:]], tail
+    return product if whole_length else trimmed(*product)
+
+
+def derivative(u):                          # of a series without a tail
+    demand(u[2] == 0, "a derivative of what is known in the norm alone")
+    length = last(u) + 1
+    return [scale(at(u[1], k), k) for k in range(length)], [scale(at(u[0], k), -k) for k in range(length)], 0
 
 
 def constant(x):
-    return [number(x)], 0
+    return [number(x)], [], 0
+
+
+def widened(u, r):
+    return u[0], u[1], u[2] + r
 
 
 def sine_and_cosine(u):
@@ -81,141 +248,650 @@ def sine_and_cosine(u):
     while norm(u) << 1 > ONE << halvings:
         halvings += 1
     demand(halvings < 7, "the argument of sin is too large")
-    y = [over(c, 1 << halvings) for c in u[0]], up(u[1], 1 << halvings)
+    y = shrunk(u, 1 << halvings)
     w, s, c = times(y, y), constant(1), constant(1)
     for k in range(14, 0, -1):
-        part = times(w, s), times(w, c)
-        shrink = [([over(a, n) for a in t[0]], up(t[1], n)) for t, n in zip(part, (2*k*(2*k + 1), 2*k*(2*k - 1)))]
-        s, c = plus(constant(1), shrink[0], -1), plus(constant(1), shrink[1], -1)
+        s, c = (plus(constant(1), shrunk(times(w, t), n), -1) for t, n in ((s, 2*k*(2*k + 1)), (c, 2*k*(2*k - 1))))
     rest = ONE >> 128                       # what is left of either series is below 2 (1/2)^30/30!
-    s = times(y, s)
-    s, c = (s[0], s[1] + rest), (c[0], c[1] + rest)
+    s, c = widened(times(y, s), rest), widened(c, rest)
     for _ in range(halvings):
         s, c = times(times(s, c), constant(2)), plus(constant(1), times(times(s, s), constant(2)), -1)
     return s, c
 
 
-def force(f, u):                            # f, f' and f'' on a series
-    if f == "sin":
-        s, c = sine_and_cosine(u)
-        return s, c, times(s, constant(-1))
-    values = []
-    for derivative in range(3):
-        total = constant(0)
-        for power in range(len(f) - 1, derivative - 1, -1):
-            factor = Fraction(f[power])
-            for k in range(derivative):
-                factor *= power - k
-            total = plus(times(total, u), constant(factor))
-        values.append(total)
-    return values
+# Forces: a tree of what was typed, evaluated with its first two derivatives by x.
+
+def parse(text, letters):
+    """sum := product (+|- product)*, product := power (*|/ power)*, power := atom (^ power), atom := number | letter | sin(sum) | (sum)"""
+    demand(len(text) <= SIZES["force"], "a force of at most 2000 characters")
+    tokens = re.findall(r"\s*(\d+(?:\.\d+)?|[A-Za-z]+|[-+*/^()]|\S)", text, re.ASCII) + [""]
+    place, depth = 0, 0
+
+    def peek():
+        return tokens[place]
+
+    def take(expected=None):
+        nonlocal place
+        token = tokens[place]
+        demand(expected is None or token == expected, "a force that this program does not know")
+        place += 1
+        return token
+
+    def nested(read):
+        nonlocal depth
+        depth += 1
+        demand(depth <= 60, "a force with too many parentheses or signs")
+        tree = read()
+        depth -= 1
+        return tree
+
+    def negative(tree):
+        return ("*", [("number", Fraction(-1)), tree])
+
+    def sum_of_products():
+        terms = [product()]
+        while peek() in ("+", "-"):
+            terms.append(product() if take() == "+" else negative(product()))
+        return terms[0] if len(terms) == 1 else ("+", terms)
+
+    def product():
+        if peek() == "-":
+            take()
+            return negative(nested(product))
+        factors = [power()]
+        while peek() in ("*", "/"):
+            if take() == "*":
+                factors.append(power())
+            else:
+                divisor = power()
+                demand(divisor[0] == "number" and divisor[1] != 0, "a quotient that this program does not know")
+                factors.append(("number", 1 / divisor[1]))
+        return factors[0] if len(factors) == 1 else ("*", factors)
+
+    def power():
+        base = atom()
+        if peek() != "^":
+            return base
+        take()
+        exponent = take()
+        demand(exponent.isdecimal() and len(exponent) <= 3 and int(exponent) <= 200, "a power that this program does not know")
+        return ("^", base, int(exponent))
+
+    def atom():
+        token = take()
+        if token in ("sin", "cos", "("):
+            if token != "(":
+                take("(")
+            inner = nested(sum_of_products)
+            take(")")
+            return inner if token == "(" else (token, inner)
+        if token in letters:
+            return ("letter", token)
+        demand(re.fullmatch(r"\d+(\.\d+)?", token, re.ASCII) and len(token) <= SIZES["number"], "a force that this program does not know")
+        return ("number", Fraction(token))
+
+    tree = sum_of_products()
+    demand(peek() == "", "a force that this program does not know")
+    return tree
 
 
-def check(text):
-    z = json.loads(text)
-    demand(z["schema"] == "lindstedt/certificate/1" and z["ode"] == "x''+f(x)=0" and z["nu"] == "1", "another schema")
-    N, odd, f = z["K"], z["odd"], z["f"]
-    demand(1 <= N <= 400 and 0 <= z["bits"] <= 224 and 0 <= z["Abits"] <= 224 and abs(z["sigma_log2"]) <= 64, "sizes")
-    demand(isinstance(f, list) or f == "sin", "a force that this program does not know")
-    demand(all(len(t) <= 200 for t in z["c"] + [z["mu"]] + [t for row in z["A_block"] for t in row]), "long numbers")
-    step = 2 if odd else 1
-    if odd:
-        demand(f == "sin" or all(Fraction(a) == 0 for a in f[::2]), "the force is not odd")
-        demand(N % 2 == 1 and all(int(c) == 0 for c in z["c"][::2]), "even harmonics")
-    I = range(1 if odd else 0, N + 1, step)
-    n = len(I) + 1
-    B = [[(int(t) << P - z["Abits"], 0) for t in row] for row in z["A_block"]]
-    demand(len(B) == n and all(len(row) == n for row in B), "the size of the inverse")
-    mu = int(z["mu"]) << P - z["bits"], 0
-    c = [(int(t) << P - z["bits"], 0) for t in z["c"]], 0
-    sigma = Fraction(2) ** z["sigma_log2"]
+def read_force(value, letters, what):
+    if isinstance(value, list):
+        demand(len(value) <= SIZES["number"], f"a polynomial of a degree below 200 in {what}")
+        tree = ("number", Fraction(0))
+        for a in reversed([fraction(a, what) for a in value]):
+            tree = ("+", [("number", a), ("*", [("letter", "x"), tree])])
+        return tree
+    demand(isinstance(value, str), f"a force in {what}")
+    return parse("sin(x)" if value == "sin" else value, letters)
 
-    def weighed(v):                         # the norm of a vector on mu and the block
-        return up(sigma.numerator * size(v[0]), sigma.denominator) + sum(map(size, v[1:]))
 
-    def image(v):
-        rows = []
-        for row in B:
-            total = 0, 0
-            for a, b in zip(row, v):
-                total = add(total, mul(a, b))
-            rows.append(total)
-        return rows
+def jet(tree, waves):
+    """f, f' and f'' by x, of series of the letters."""
+    kind = tree[0]
+    zero = ([], [], 0)
+    if kind == "number":
+        return constant(tree[1]), zero, zero
+    if kind == "letter":
+        return waves[tree[1]], constant(1) if tree[1] == "x" else zero, zero
+    if kind == "+":
+        parts = [jet(part, waves) for part in tree[1]]
+        result = (zero, zero, zero)
+        for part in parts:
+            result = tuple(plus(a, b) for a, b in zip(result, part))
+        return result
+    if kind == "*":
+        product = jet(tree[1][0], waves)
+        for factor in tree[1][1:]:
+            product = jet_times(product, jet(factor, waves))
+        return product
+    if kind == "^":
+        base, result, n = jet(tree[1], waves), (constant(1), zero, zero), tree[2]
+        while n:                            # squares
+            if n & 1:
+                result = jet_times(result, base)
+            n >>= 1
+            if n:
+                base = jet_times(base, base)
+        return result
+    u, du, ddu = jet(tree[1], waves)
+    s, c = sine_and_cosine(u)
+    f, df, ddf = (s, c, minus(s)) if kind == "sin" else (c, minus(s), minus(c))
+    return f, times(df, du), plus(times(ddf, times(du, du)), times(df, ddu))
 
-    def beyond(last):
-        return range(N + step, last + 1, step)
 
-    def unit(v, k):                         # less the unit vector
-        return [add(a, (ONE, 0), -1) if i == k else a for i, a in enumerate(v)]
+def jet_times(a, b):
+    mixed = times(a[1], b[1])
+    second = plus(plus(times(a[2], b[0]), times(a[0], b[2])), plus(mixed, mixed))
+    return times(a[0], b[0]), plus(times(a[1], b[0]), times(a[0], b[1])), second
 
-    F, G, _ = force(f, c)
-    a = weighed([row[0] for row in B])
-    alpha = max([weighed([row[k] for row in B]) for k in range(1, n)] + [up(ONE + a, (N + step) ** 2)])
+
+def parity(tree, turned):
+    """1 where the force stays as it is with these letters of the other sign, -1 where it changes its own, 0 where neither is seen, None of
+    nothing: written out as a polynomial, or part by part."""
+    terms = expanded(tree)
+    if terms is not None:
+        signs = {(-1) ** sum(n for letter, n in monomial if letter in turned) for monomial in terms}
+        return None if not signs else signs.pop() if len(signs) == 1 else 0
+    return parity_by_parts(tree, turned)
+
+
+def parity_by_parts(tree, turned):
+    kind = tree[0]
+    if kind == "number":
+        return 1 if tree[1] else None
+    if kind == "letter":
+        return -1 if tree[1] in turned else 1
+    if kind == "+":
+        signs = {parity_by_parts(part, turned) for part in tree[1]} - {None}
+        return None if not signs else signs.pop() if len(signs) == 1 else 0
+    if kind == "*":
+        product = 1
+        for factor in tree[1]:
+            sign = parity_by_parts(factor, turned)
+            if sign is None:
+                return None
+            product *= sign
+        return product
+    inner = parity_by_parts(tree[1], turned)
+    if kind == "^":
+        return 1 if tree[2] == 0 else None if inner is None else inner ** tree[2]
+    if inner in (1, None):
+        return 1
+    return (-1 if kind == "sin" else 1) if inner == -1 else 0
+
+
+def expanded(tree):
+    """The polynomial as a table of monomials; None where it is none, or too long."""
+    kind = tree[0]
+    if kind == "number":
+        return {(): tree[1]} if tree[1] else {}
+    if kind == "letter":
+        return {((tree[1], 1),): Fraction(1)}
+    if kind in ("sin", "cos"):
+        return None
+    parts = [expanded(part) for part in tree[1]] if kind in "+*" else [expanded(tree[1])] * tree[2]
+    if any(part is None for part in parts):
+        return None
+    if kind == "+":
+        total = {}
+        for part in parts:
+            for monomial, value in part.items():
+                total[monomial] = total.get(monomial, 0) + value
+        return {monomial: value for monomial, value in total.items() if value}
+    total = {(): Fraction(1)}
+    for part in parts:
+        product = {}
+        if len(total) * len(part) > 10000:
+            return None
+        for one, value in total.items():
+            for other, factor in part.items():
+                powers = dict(one)
+                for letter, n in other:
+                    powers[letter] = powers.get(letter, 0) + n
+                monomial = tuple(sorted(powers.items()))
+                product[monomial] = product.get(monomial, 0) + value * factor
+        total = {monomial: value for monomial, value in product.items() if value}
+    return total
+
+
+def is_mirror_image(g, h, turned):          # g even and h odd
+    return parity(g, turned) in (1, None) and parity(h, turned) in (-1, None)
+
+
+# What both theorems share.
+
+class Block:
+    """The matrix of the approximate inverse, on a first unknown of the weight sigma (where there is one) and harmonics."""
+
+    def __init__(self, rows, bits, sigma):
+        self.rows = [[dyadic(entry, bits) for entry in row] for row in rows]
+        self.sigma = sigma                  # None where all weigh the same
+        self.size = len(rows)
+
+    def norm(self, v):
+        first = size(v[0]) if self.sigma is None else up(self.sigma.numerator * size(v[0]), self.sigma.denominator)
+        return first + sum(map(size, v[1:]))
+
+    def column(self, k):
+        return self.norm([row[k] for row in self.rows])
+
+    def image(self, v):
+        used = [(k, a) for k, a in enumerate(v) if a != ZERO]
+        result = []
+        for row in self.rows:
+            m = r = 0
+            for k, a in used:
+                b = row[k]
+                m += a[0] * b[0]
+                r += abs(b[0]) * a[1]
+            result.append((m >> P, up(r, ONE) + 1))
+        return result
+
+    def per_sigma(self, t):
+        return up(t * self.sigma.denominator, self.sigma.numerator)
+
+
+def unit(v, k):                             # less the unit vector
+    return [add(a, (ONE, 0), -1) if i == k else a for i, a in enumerate(v)]
+
+
+def radius(Y0, Z1, curvature, distinct):
+    """r = 2 Y0/((1 - Z1) + sqrt(D)), D = (1 - Z1)^2 - 2 Y0 Z2, with Z2 on the ball of radius R >= r."""
+    demand(Z1 < ONE, f"Z1 = {Z1 / ONE:.3g} is not below 1")
+    reason = "D is not positive"
+    for percent in (105, 800, 6400):
+        R = up(percent * 2 * Y0 * ONE, 100 * (ONE - Z1))
+        Z2 = curvature(R)
+        D = (ONE - Z1) ** 2 - 2 * Y0 * Z2
+        if D <= 0:
+            continue
+        r = up(2 * Y0 * ONE, ONE - Z1 + isqrt(D))
+        if r <= R and Z1 + up(Z2 * r, ONE) < ONE and distinct(r):
+            return r
+        reason = "the radius is too large"
+    raise NotProved(reason)
+
+
+def prove_motion(z, f, A, B, block, odd, mu, c):
+    """x'' + f(x) = 0, x(0) = A: sum_k c_k = A and -k^2 c_k + mu f_k = 0."""
+    N, step = block[-1], 2 if odd else 1
+    F, G, _ = jet(f, {"x": c})
+    demand(not F[1] and not G[1], "sines in a force along cosines")
+    F0, G0 = F[0], G[0]
+    beyond = lambda end: range(N + step, end + 1, step)
+    a = B.column(0)
+    alpha = max([B.column(k) for k in range(1, B.size)] + [up(ONE + a, (N + step) ** 2)])
     # Y0
-    y = {k: add(at(c, k), over(mul(mu, at(F, k)), k * k), -1) for k in beyond(max(len(c[0]), len(F[0])))}
-    start = add((sum(m for m, _ in c[0]), 0), number(z["A"]), -1)
-    for value in y.values():
-        start = add(start, value, -1)
-    rows = [add(mul(mu, at(F, k)), (-k * k * at(c, k)[0], 0)) for k in I]
-    Y0 = weighed(image([start] + rows)) + sum(map(size, y.values())) + up(alpha * up(size(mu) * F[1], ONE), ONE)
+    y = {k: add(at(c[0], k), over(mul(mu, at(F0, k)), k * k), -1) for k in beyond(max(len(c[0]), len(F0)))}
+    start = add(add(total(c[0]), number(A), -1), total(y.values()), -1)
+    rows = [add(mul(mu, at(F0, k)), scale(at(c[0], k), -k * k)) for k in block]
+    Y0 = B.norm(B.image([start] + rows)) + sum(map(size, y.values())) + up(alpha * up(size(mu) * F[2], ONE), ONE)
     # Z1
-    s = [over(g, 2) if k else g for k, g in enumerate(G[0])]
-    half = lambda m: s[m] if m < len(s) else (0, 0)
-    M = lambda k, j: at(G, k) if j == 0 else half(j) if k == 0 else add(half(abs(k - j)), half(k + j))
-    L = len(G[0])
-    parts = {k: over(at(F, k), k * k) for k in beyond(len(F[0]))}
-    start = 0, 0
-    for value in parts.values():
-        start = add(start, value)
-    column = weighed(unit(image([start] + [at(F, k) for k in I]), 0)) + sum(map(size, parts.values()))
-    worst = up((column + up(alpha * F[1], ONE)) * sigma.denominator, sigma.numerator)
-    G_norm, j = sum(map(size, G[0])), I[0]
+    halves = [over(g, 2) if k else g for k, g in enumerate(G0)]
+    M = lambda k, j: at(G0, k) if j == 0 else at(halves, j) if k == 0 else add(at(halves, abs(k - j)), at(halves, k + j))
+    L = len(G0)
+    parts = [over(at(F0, k), k * k) for k in beyond(len(F0))]
+    start = total(parts)
+    column = B.norm(unit(B.image([start] + [at(F0, k) for k in block]), 0)) + sum(map(size, parts))
+    worst = B.per_sigma(column + up(alpha * F[2], ONE))
+    G_norm, j = sum(map(size, G0)), block[0]
     while True:
-        images = [over(mul(mu, M(k, j)), k * k) for k in beyond(j + L)]
-        start = 0, 0
-        for value in images:
-            start = add(start, value)
+        images = [over(mul(mu, M(k, j)), k * k) for k in beyond(j + L) if k >= j - L]
+        start = total(images)
         tail = sum(map(size, images))
         if j > N + L:
             worst = max(worst, tail + up(a * size(start), ONE))
         else:
             if j <= N:
                 start = add(start, (ONE, 0))
-            v = [start] + [add(mul(mu, M(k, j)), (-k * k * ONE if k == j else 0, 0)) for k in I]
-            v = image(v)
-            worst = max(worst, weighed(unit(v, I.index(j) + 1) if j <= N else v) + tail)
+            v = B.image([start] + [add(mul(mu, M(k, j)), (-k * k * ONE if k == j else 0, 0)) for k in block])
+            worst = max(worst, B.norm(unit(v, block.index(j) + 1) if j <= N else v) + tail)
+        demand(worst < ONE, f"Z1 = {worst / ONE:.3g} is not below 1")
         far = j + step - L                  # all further columns together
         if far > 0 and j > N + L:
             rest = up(up(size(mu) * (ONE + a), ONE) * G_norm, ONE * far * far)
             if 5 * rest < ONE or rest < worst:
                 worst = max(worst, rest)
                 break
+        demand(j < 8000, "a force too steep for its columns to be bounded")
         j += step
-    Z1 = worst + up(alpha * up(size(mu) * G[1], ONE), ONE)
-    demand(Z1 < ONE, f"Z1 = {Z1 / ONE:.3g} is not below 1")
-    # Z2, the radius
-    R = up(105 * 2 * Y0 * ONE, 100 * (ONE - Z1))
-    _, G_R, H_R = force(f, (c[0], R))
-    per_sigma = lambda t: up(t * sigma.denominator, sigma.numerator)
-    mu_R = size(mu) + per_sigma(R)
-    Z2 = up(alpha * max(per_sigma(norm(G_R)), up(mu_R * norm(H_R), ONE)), ONE)
-    D = (ONE - Z1) ** 2 - 2 * Y0 * Z2
-    demand(D > 0, "D is not positive")
-    r = up(2 * Y0 * ONE, ONE - Z1 + isqrt(D))
-    demand(r <= R and Z1 + up(Z2 * r, ONE) < ONE and per_sigma(r) < mu[0] and r < size(at(c, 1)), "the radius is too large")
+    Z1 = worst + up(alpha * up(size(mu) * G[2], ONE), ONE)
+
+    def curvature(R):
+        _, G_R, H_R = jet(f, {"x": widened(c, R)})
+        return up(alpha * max(B.per_sigma(norm(G_R)), up((size(mu) + B.per_sigma(R)) * norm(H_R), ONE)), ONE)
+
+    return radius(Y0, Z1, curvature, lambda r: B.per_sigma(r) < mu[0] and r < least(at(c[0], 1)))
+
+
+def prove_damped(g, h, waves, B, block, N, step, p, free):
+    """x'' + g(x) x' + h = 0, X(theta), p = 1/omega: -k^2 X_k + p D_k + p^2 h_k = 0, D = g(X) X'. Where p is free it has the place of
+    the sine of the first harmonic among the unknowns."""
+    X = waves["x"]
+    G, H = jet(g, waves), jet(h, waves)
+    D = times(G[0], derivative(X))
+    p2 = mul(p, p)
+    offset = 1 if free else 0               # unknowns that are no harmonics
+    columns = [B.column(k) for k in range(B.size)]
+    alpha = max(columns + [up(ONE, (N + 1) ** 2)])
+    beta = max([wave[1] * t for wave, t in zip(block, columns)] + [up(ONE, N + 1)])
+    bounded = lambda t, e: up(t * e, ONE)
+    beyond = lambda end: [(kind, k) for k in range(N + step, end + 1, step) for kind in (0, 1)]
+    end = max(last(X), last(D), last(H[0]))
+    bent = lambda w: add(mul(p, coefficient(D, w)), mul(p2, coefficient(H[0], w)))
+    rows = [add(bent(w), scale(coefficient(X, w), -w[1] ** 2)) for w in block]
+    rest = [over(add(bent(w), scale(coefficient(X, w), -w[1] ** 2)), w[1] ** 2) for w in beyond(end)]
+    unseen = bounded(size(p), D[2]) + bounded(size(p2), H[0][2])
+    Y0 = B.norm(B.image(rows)) + sum(map(size, rest)) + bounded(alpha, unseen)
+    # Z1
+    worst = 0
+    if free:
+        by_p = lambda w: add(coefficient(D, w), scale(mul(p, coefficient(H[0], w)), 2))
+        tail = sum(size(over(by_p(w), w[1] ** 2)) for w in beyond(end))
+        unseen = bounded(alpha, D[2] + 2 * bounded(size(p), H[0][2]))
+        worst = B.per_sigma(B.norm(unit(B.image([by_p(w) for w in block]), 0)) + tail + unseen)
+    g0, h1 = (G[0][0], G[0][1], 0), (H[1][0], H[1][1], 0)
+    unseen = bounded(beta, bounded(size(p), G[0][2])) + bounded(alpha, bounded(size(p2), H[1][2]))
+    W = max(last(g0), last(h1))
+    places = {w: k for k, w in enumerate(block) if k >= offset}
+    j = min(k for _, k in block)
+    while True:
+        for kind in (0, 1):
+            wave = (kind, j)
+            if wave == (1, 0) or (free and wave == (1, 1)):
+                continue
+            e = ([ZERO] * j + [(ONE, 0)], [], 0) if kind == 0 else ([], [ZERO] * j + [(ONE, 0)], 0)
+            drag, slope = derivative(times(g0, e, True)), times(h1, e, True)
+            moved = lambda w: add(mul(p, coefficient(drag, w)), mul(p2, coefficient(slope, w)))
+            tail = sum(size(over(moved(w), w[1] ** 2)) for w in beyond(j + W) if w[1] >= j - W)
+            if j > N + W:
+                worst = max(worst, tail)
+                continue
+            v = B.image([add(moved(w), (-w[1] ** 2 * ONE if w == wave else 0, 0)) for w in block])
+            worst = max(worst, B.norm(unit(v, places[wave]) if wave in places else v) + tail)
+            demand(worst < ONE, f"Z1 = {worst / ONE:.3g} is not below 1")
+        if j > N + W:
+            far = j + step - W
+            more = up(bounded(size(p), norm(g0)), far) + up(bounded(size(p2), norm(h1)), far * far)
+            if 5 * more < ONE or more < worst:
+                worst = max(worst, more)
+                break
+        demand(j < 8000, "a force too steep for its columns to be bounded")
+        j += step
+    Z1 = worst + unseen
+
+    def curvature(R):
+        ball = dict(waves, x=widened(X, R))
+        (g_R, dg_R, _), (h_R, dh_R, ddh_R) = jet(g, ball), jet(h, ball)
+        most = size(p) + (B.per_sigma(R) if free else 0)
+        of_motion = bounded(beta, bounded(most, norm(dg_R))) + bounded(alpha, bounded(bounded(most, most), norm(ddh_R)))
+        if not free:
+            return of_motion
+        both = B.per_sigma(B.per_sigma(2 * bounded(alpha, norm(h_R))))
+        each = B.per_sigma(bounded(beta, norm(g_R)) + 2 * bounded(most, bounded(alpha, norm(dh_R))))
+        return max(both, each, of_motion)
+
+    a1 = at(X[0], 1)
+    return radius(Y0, Z1, curvature, lambda r: not free or (B.per_sigma(r) < p[0] and r < a1[0]))
+
+
+# What follows for the formula.
+
+def largest(u, claimed):
+    """max |u| from both sides, by bisection: |u| <= |u(t)| + h |u'(t)| + h^2/2 sum k^2 (|a_k| + |b_k|) within h of t. It goes on until
+    the claims hold or nothing is gained."""
+    low_claim, high_claim = claimed
+    du, bend = derivative(u), sum(k * k * (size(at(u[0], k)) + size(at(u[1], k))) for k in range(last(u) + 1))
+    if finite(u) == 0:
+        return 0, 0
+    pieces = 4 * (last(u) + 1)
+    two_pi = 2 * PI[0], 2 * PI[1]
+    best, queue = 0, []
+
+    def put(place, count):                  # the piece about the angle 2 pi place/count, of the half width pi/count
+        nonlocal best
+        t = over(scale(two_pi, place), count)
+        value, slope = values(u, du, t)
+        h = up(PI[0] + PI[1], count) + t[1]
+        above = size(value) + up(h * size(slope), ONE) + up(up(h * h, ONE) * bend, 2 * ONE)
+        best = max(best, least(value))
+        heapq.heappush(queue, (-above, place, count))
+
+    for place in range(pieces):
+        put(place, pieces)
+    for _ in range(20000):
+        above, place, count = -queue[0][0], queue[0][1], queue[0][2]
+        enough = above <= high_claim and best >= low_claim
+        if enough or above - best <= (best >> 40) + (ONE >> 200) or above < best:
+            break
+        heapq.heappop(queue)
+        for part in (-1, 0, 1):
+            put(3 * place + part, 3 * count)
+    return best, max(best, -queue[0][0])
+
+
+def values(u, du, t):
+    s, c = angle(t)
+    value, slope = ZERO, ZERO
+    turn = (ONE, 0), ZERO
+    for k in range(last(u) + 1):
+        value = add(value, add(mul(at(u[0], k), turn[0]), mul(at(u[1], k), turn[1])))
+        slope = add(slope, add(mul(at(du[0], k), turn[0]), mul(at(du[1], k), turn[1])))
+        turn = add(mul(turn[0], c), mul(turn[1], s), -1), add(mul(turn[1], c), mul(turn[0], s))
+    return value, slope
+
+
+def angle(t):                               # sine and cosine of a number
+    return tuple((at(v[0], 0)[0], at(v[0], 0)[1] + v[2]) for v in sine_and_cosine(([t], [], 0)))
+
+
+def arctangent_of_reciprocal(n):
+    power, total, k = over((ONE, 0), n), ZERO, 1
+    while size(power) > 2:
+        total = add(total, over(power, k), 1 if k % 4 == 1 else -1)
+        power, k = over(power, n * n), k + 2
+    return total[0], total[1] + size(power)
+
+
+PI = add(scale(arctangent_of_reciprocal(5), 16), scale(arctangent_of_reciprocal(239), 4), -1)
+
+
+def turned(u, c, s):                        # at an angle that is larger by one of this cosine and sine
+    cosines, sines, turn = [], [], ((ONE, 0), ZERO)
+    for k in range(last(u) + 1):
+        a, b = at(u[0], k), at(u[1], k)
+        cosines.append(add(mul(a, turn[0]), mul(b, turn[1])))
+        sines.append(add(mul(b, turn[0]), mul(a, turn[1]), -1))
+        turn = add(mul(turn[0], c), mul(turn[1], s), -1), add(mul(turn[1], c), mul(turn[0], s))
+    return cosines, sines, u[2]
+
+
+def mean(u):                                # no more than the root of the mean square
+    squares = 2 * least(at(u[0], 0)) ** 2 + sum(least(a) ** 2 for part in u[:2] for a in part[1:])
+    return isqrt(squares // 2)
+
+
+def deviation(copies, own, r, claimed):
+    """max |X - X~| of the nearest of the motions that the symmetries of the equation make of X."""
+    low, high = (units(t) for t in claimed)
+    apart = sorted(((mean(d), d) for d in (plus(copy, own, -1) for copy in copies)), key=lambda t: t[0])
+    below, above = None, None
+    for average, d in apart:
+        if above is not None and average >= above:
+            break
+        one, other = largest(d, (low + r, high - r))
+        below = one if below is None else min(below, one)
+        above = other if above is None else min(above, other)
+    return max(0, below - r), above + r
+
+
+def units(x):                               # below a fraction
+    return x.numerator * ONE // x.denominator
+
+
+def hold(proved, claimed, what):
+    low, high = claimed
+    demand(Fraction(proved[1], ONE) <= high and low <= Fraction(proved[0], ONE), f"{what} is not as claimed")
+
+
+def apart(a, b):
+    d = add(a, b, -1)
+    return least(d), size(d)
+
+
+def pair(value, what):
+    demand(isinstance(value, list) and len(value) == 2, f"two decimals in {what}")
+    return [claim(text, what) for text in value]
+
+
+def check_formula(z, kind, bits, copies, r, omega, amplitude, start):
+    """Every claim about the formula; r is the radius, omega or amplitude a ball."""
+    formula = z["formula"]
+    needed = {"law", "c", "phase_error"} | ({"amplitude_error"} if kind == DRIVEN else {"omega", "frequency_error", "drift"})
+    keys(formula, needed | ({"s"} if kind != MOTION else set()), {"values"}, "formula")
+    for key in ("law", "values"):                # words, of which nothing is checked here
+        demand(isinstance(formula.get(key, ""), str) and len(formula.get(key, "")) <= SIZES["file"], f"a text in {key}")
+    c, s = integers(formula["c"], "formula.c"), integers(formula.get("s", []), "formula.s")
+    own = [dyadic(a, bits) for a in c], [ZERO] + [dyadic(b, bits) for b in s[1:]], 0
+    claimed = pair(formula["phase_error"], "phase_error")
+    if kind == DRIVEN:
+        a = formula_amplitude(own, z["drive"]["harmonic"])
+        hold(apart(a, amplitude), pair(formula["amplitude_error"], "amplitude_error"), "the error of the amplitude")
+        hold(deviation(copies, own, r, claimed), claimed, "the deviation")
+        return
+    own_omega = dyadic(integer(formula["omega"], "omega"), bits)
+    demand(own_omega[0] > 0, "a formula whose frequency is not positive")
+    demand(any(len(part) > 1 and part[1] for part in (c, s)), "a formula without a first harmonic")
+    if kind == CYCLE:                       # until its first harmonic is a positive cosine
+        a, b = at(own[0], 1), at(own[1], 1)
+        if b != ZERO or a[0] < 0:
+            length = root(add(mul(a, a), mul(b, b)))
+            own = turned(own, quotient(a, length), quotient(b, length))
+    else:
+        begin = add(total(own[0]), number(start), -1)
+        demand(least(begin) <= finite(own) >> 20, "a formula that begins elsewhere than the motion")
+    off = apart(own_omega, omega)
+    hold(off, pair(formula["frequency_error"], "frequency_error"), "the error of the frequency")
+    hold(deviation(copies, own, r, claimed), claimed, "the deviation")
+    drift = pair(formula["drift"], "drift")
+    per_off = [up(units(t) * ONE, max(1, off[1])) for t in drift]
+    steep = largest(derivative(own), (units(drift[0]) * ONE // max(1, off[0]) + 1, per_off[1] - 1))
+    hold((steep[0] * off[0] >> P, up(steep[1] * off[1], ONE)), drift, "the drift")
+
+
+def formula_amplitude(u, harmonic):
+    a, b = at(u[0], harmonic), at(u[1], harmonic)
+    square = add(mul(a, a), mul(b, b))
+    if square[0] - square[1] > 0:
+        return root(square)
+    return 0, size(a) + size(b)
+
+
+def check(text):
+    demand(len(text) <= SIZES["file"], "a file of at most 16 MB")
+    z = json.loads(text, object_pairs_hook=unique, parse_float=no_number, parse_constant=no_number,
+                   parse_int=lambda digits: int(digits) if len(digits) <= 20 else no_number(digits))
+    demand(isinstance(z, dict) and z.get("schema") == "lindstedt/certificate/1" and z.get("nu") == "1", "another schema")
+    kind = z.get("ode")
+    demand(kind in (MOTION, CYCLE, DRIVEN), "another equation")
+    own = {MOTION: {"f", "A", "mu"}, CYCLE: {"g", "h", "p", "s"}, DRIVEN: {"g", "h", "drive", "s"}}[kind]
+    keys(z, {"schema", "ode", "odd", "bits", "c", "K", "Abits", "A_block", "sigma_log2", "nu", "claim_r"} | own, {"formula"}, "the file")
+    N, odd = whole(z["K"], 1, 400, "K"), z["odd"]
+    bits, inverse_bits = whole(z["bits"], 0, 224, "bits"), whole(z["Abits"], 0, 224, "Abits")
+    exponent = whole(z["sigma_log2"], -64, 64, "sigma_log2")
+    demand(type(odd) is bool and (not odd or N % 2 == 1), "odd harmonics, and a block that ends with an even one")
+    rows = z["A_block"]
+    demand(isinstance(rows, list) and len(rows) <= SIZES["block"], "the size of the inverse")
+    rows = [integers(row, "A_block") for row in rows]
+    step, sigma = 2 if odd else 1, Fraction(2) ** exponent
+    c = [dyadic(a, bits) for a in integers(z["c"], "c")]
+    demand(not odd or all(a == ZERO for a in c[::2]), "even harmonics")
+    harmonics = list(range(1 if odd else 0, N + 1, step))
+    omega = amplitude = start = None
+    if kind == MOTION:
+        demand(len(rows) == len(harmonics) + 1 and all(len(row) == len(rows) for row in rows), "the size of the inverse")
+        f, start, X = read_force(z["f"], {"x"}, "f"), fraction(z["A"], "A"), (c, [], 0)
+        demand(not odd or parity(f, {"x"}) in (-1, None), "the force is not odd")
+        mu, B = dyadic(integer(z["mu"], "mu"), bits), Block(rows, inverse_bits, sigma)
+        r = prove_motion(z, f, start, B, harmonics, odd, mu, X)
+        omega, copies = root(quotient((ONE, 0), (mu[0], B.per_sigma(r)))), [X]
+    else:
+        free = kind == CYCLE
+        s = [dyadic(b, bits) for b in integers(z["s"], "s")]
+        demand(all(b == ZERO for b in s[:2 if free else 1]), "a sine of the first harmonic, or one of the constant")
+        demand(not odd or all(b == ZERO for b in s[::2]), "even harmonics")
+        g, h = read_force(z["g"], {"x"}, "g"), read_force(z["h"], {"x"} if free else {"x", "c", "s"}, "h")
+        block = [(part, k) for k in harmonics for part in (0, 1) if (part, k) != (1, 0)]
+        if free:
+            block = [(1, 1)] + [wave for wave in block if wave != (1, 1)]
+        demand(len(block) <= 401, "a block of more than 401 unknowns")
+        demand(len(rows) == len(block) and all(len(row) == len(rows) for row in rows), "the size of the inverse")
+        X = (c, s, 0)
+        waves, periods = {"x": X}, 1
+        if free:
+            demand(at(c, 1)[0] > 0, "a first harmonic that is no positive cosine")
+            p, B = dyadic(integer(z["p"], "p"), bits), Block(rows, inverse_bits, sigma)
+            demand(p[0] > 0, "1/omega is not positive")
+        else:
+            keys(z["drive"], {"Omega", "n", "harmonic"}, set(), "drive")
+            frequency = fraction(z["drive"]["Omega"], "Omega")
+            periods = whole(z["drive"]["n"], 1, 20, "n")
+            harmonic = whole(z["drive"]["harmonic"], 1, 400, "harmonic")
+            demand(frequency > 0 and exponent == 0, "a drive whose frequency is positive, and no weight")
+            p, B = number(periods / frequency), Block(rows, inverse_bits, None)
+            waves.update(c=([ZERO] * periods + [(ONE, 0)], [], 0), s=([], [ZERO] * periods + [(ONE, 0)], 0))
+        half = {"x", "c", "s"} if not free and periods % 2 == 1 else {"x"}
+        demand(not odd or is_mirror_image(g, h, half), "the equation is not odd")
+        r = prove_damped(g, h, waves, B, block, N, step, p, free)
+        if free:
+            omega = quotient((ONE, 0), (p[0], B.per_sigma(r)))
+        else:
+            amplitude = formula_amplitude(X, harmonic)
+            amplitude = amplitude[0], amplitude[1] + r
+        copies = [X]
+        if z.get("formula") is not None:
+            copies = symmetric_copies(X, g, h, free, periods, odd)
     # Rounding is another here than where the radius was claimed.
-    demand(Fraction(r, ONE) <= Fraction(z["claim_r"]) * (1 + Fraction(1, 1000)) + Fraction(1, 2**120), "a smaller radius is claimed")
-    ends = [mu[0] + per_sigma(r), mu[0] - per_sigma(r)]
-    omega = [isqrt(ONE ** 3 // ends[0]), isqrt(up(ONE ** 3, ends[1])) + 1]
-    return r, omega
+    demand(Fraction(r, ONE) <= claim(z["claim_r"], "claim_r") * (1 + Fraction(1, 1000)) + Fraction(1, 2**120), "a smaller radius is claimed")
+    if z.get("formula") is not None:
+        check_formula(z, kind, bits, copies, r, omega, amplitude, start)
+    return kind, r, omega or amplitude
+
+
+def symmetric_copies(X, g, h, free, periods, odd):
+    """X any number of periods of the drive later, and -X where the equation is its own mirror image: at once, or half a period of the
+    drive later (of a cycle half its own)."""
+    def later(j):                           # by the angle pi j/n
+        s, c = angle(over(scale(PI, j), periods))
+        return turned(X, c, s) if j else X
+
+    copies = [later(2 * m) for m in range(periods)]
+    if free:
+        at_once, half_later = False, not odd and is_mirror_image(g, h, {"x"})
+    else:
+        at_once, half_later = (is_mirror_image(g, h, letters) for letters in ({"x"}, {"x", "c", "s"}))
+        if odd:                             # its own symmetry makes nothing new
+            at_once, half_later = at_once and periods % 2 == 1, half_later and periods % 2 == 0
+    if at_once:
+        copies += [minus(later(2 * m)) for m in range(periods)]
+    if half_later:
+        copies += [minus(later(2 * m + 1)) for m in range(periods)]
+    return copies
 
 
 def decimal(x, up_to=0):                    # thirty-six decimals, rounded down or up
-    digits = str(x * 10 ** 36 // ONE + up_to).rjust(37, "0")
+    digits = str(up(x * 10 ** 36, ONE) if up_to else x * 10 ** 36 // ONE).rjust(37, "0")
     return digits[:-36] + "." + digits[-36:]
 
 
 if __name__ == "__main__":
-    with open(sys.argv[1], encoding="utf-8") as file:
-        radius, omega = check(file.read())
-    print(json.dumps([f"{up(radius * 10 ** 40, ONE)}e-40", decimal(omega[0]), decimal(omega[1], 1)]))
+    try:
+        with open(sys.argv[1], encoding="utf-8") as file:
+            kind, r, (middle, around) = check(file.read(SIZES["file"] + 1))
+    except (NotProved, json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
+        words = str(error) if isinstance(error, NotProved) else "no JSON"
+        sys.exit(f"not proved: {words}")
+    name = "amplitude" if kind == DRIVEN else "omega"
+    ends = [decimal(max(0, middle - around)), decimal(middle + around, 1)]
+    print(json.dumps({"r": f"{up(r * 10 ** 40, ONE)}e-40", name: ends}))

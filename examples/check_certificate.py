@@ -157,7 +157,7 @@ def coefficient(u, wave):
 def trimmed(c, s, tail):
     c, s = list(c), list(s)
     for part in (c, s):
-        while part and (size(part[-1]) < ONE >> 120 or len(part) > LONGEST):
+        while part and (size(part[-1]) < ONE >> 150 or len(part) > LONGEST):
             tail += size(part.pop())
     return c, s, tail
 

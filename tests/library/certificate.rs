@@ -1,8 +1,11 @@
 //! Certificates against frequencies that are known to forty digits: arithmetic-geometric means, in whole numbers of another crate.
 
-use lindstedt::certificate::{Beyond, Certificate, CheckError, NotCertified, NotProved, certify, check, validity};
+use lindstedt::certificate::{
+    Beyond, Certificate, CheckError, JudgedFormula, NotCertified, NotProved, certify, certify_motion, check, validity,
+};
 use lindstedt::exact::{Integer, Rational, from_f64, ratio, to_f64};
 use lindstedt::expr::{Expr, parse_expression};
+use lindstedt::report::CertificateReport;
 use lindstedt::verify::motions;
 use lindstedt::{Method, Options, Oscillator, Solution, Supervision, Values, solve};
 use num_bigint::BigInt;
@@ -529,6 +532,40 @@ fn a_proved_range_ends_where_the_error_passes_the_tolerance() {
     }
 }
 
+/// Where the error hardly grows with the amplitude the proved range still ends where the tolerance is passed: omega^2 = 1 + 3 A^2/4 for x + x^3 is off by
+/// 2.2 % at most.
+#[test]
+fn a_proved_range_reaches_its_end_where_the_error_is_flat() {
+    let cubic = "x'' + x + x^3 = 0";
+    let error = |amplitude: f64| {
+        let exact = from_f64(amplitude).expect("finite");
+        let truth = to_f64(&duffing(&ratio(1, 1), &exact));
+        ((1.0 + 0.75 * amplitude * amplitude).sqrt() / truth - 1.0).abs()
+    };
+    for tolerance in [0.01, 0.02, 0.0215] {
+        let ends = [ratio(1, 10), ratio(30, 1)];
+        let (to, beyond, _) = proved_range(cubic, Method::HarmonicBalance, 1, "", ends, tolerance);
+        let (mut low, mut high) = (0.1, 30.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if error(middle) <= tolerance {
+                low = middle
+            } else {
+                high = middle
+            }
+        }
+        let to = to_f64(&to);
+        assert!(to <= high && to > 0.99 * low, "{tolerance}: {to}, {low}");
+        let Beyond::Further(outside) = beyond else {
+            panic!("{tolerance}: {beyond:?}");
+        };
+        assert!(
+            error(to_f64(&outside)) > tolerance && to_f64(&outside) < 1.02 * low,
+            "{outside}"
+        );
+    }
+}
+
 #[test]
 fn a_range_may_be_proved_to_its_end_or_end_with_the_well() {
     // An exact law has no error.
@@ -573,4 +610,139 @@ fn a_range_may_be_proved_to_its_end_or_end_with_the_well() {
         Supervision::default(),
     );
     assert!(matches!(refused, Err(NotCertified::Law(_))), "{refused:?}");
+}
+
+/// omega^2 = 1 - A^2/8 has no root at A = 3: the motion is proved without it, and its frequency to thirty digits.
+#[test]
+fn a_motion_is_proved_where_its_formula_has_no_value() {
+    let oscillator = Oscillator::parse("x'' + sin(x) = 0").expect("an equation");
+    let options = Options {
+        order: Some(2),
+        ..Options::default()
+    };
+    let solution = solve(&oscillator, &options).expect("a solution");
+    let at: Values = "A = 3".parse().expect("values");
+    let refused = certify(&oscillator, &solution, &at).expect_err("no formula");
+    assert!(
+        refused.help().is_some_and(|help| help.contains("--no-formula")),
+        "{refused}"
+    );
+    let (certificate, proved) = certify_motion(&oscillator, &solution, &at).expect("a proof");
+    assert!(proved.formula.is_none() && check(&certificate).as_ref() == Ok(&proved));
+    assert_eq!(contains(&certificate, &pendulum(&ratio(3, 1))), Ok(true));
+}
+
+/// Half a period later the pendulum is at -A: a file that begins there with the formula for A would say that it is off by 2 A.
+#[test]
+fn a_formula_begins_where_the_motion_does() {
+    let (.., sound) = certified("x'' + sin(x) = 0", 4, "A = 3/2");
+    assert!(check(&sound).expect("a proof").law_is_held);
+    let reason = |change: &dyn Fn(&mut Certificate)| {
+        let mut other = sound.clone();
+        change(&mut other);
+        check(&other).expect_err("no certificate").to_string()
+    };
+    let turn = |certificate: &mut Certificate| {
+        certificate.start = -certificate.start.clone();
+        certificate.coefficients.iter_mut().for_each(|units| *units = -&*units);
+        certificate.inverse[0].iter_mut().for_each(|entry| *entry = -&*entry);
+    };
+    let mut alone = sound.clone();
+    turn(&mut alone);
+    alone.formula = None;
+    assert!(check(&alone).is_ok(), "it is a motion");
+    assert!(reason(&turn).contains("begins elsewhere"), "{}", reason(&turn));
+    let formula = |change: fn(&mut JudgedFormula)| {
+        reason(&|other: &mut Certificate| change(other.formula.as_mut().expect("a formula")))
+    };
+    assert!(formula(|formula| formula.frequency = -&formula.frequency).contains("not positive"));
+    // Another law, and the law at another amplitude with a frequency that is right.
+    assert!(formula(|formula| formula.law = "omega = 1 - A^2/16".to_owned()).contains("another frequency"));
+    let elsewhere = formula(|formula| {
+        formula.law = "omega^2 = 1 - 9*A^2/32 + 7*81*A^4/(16*1536)".to_owned();
+        formula.values = "A = 1".parse().expect("values");
+    });
+    assert!(elsewhere.contains("amplitude is not that of the motion"), "{elsewhere}");
+}
+
+proptest! {
+    /// Whatever is proved, what is printed is no stronger.
+    #[test]
+    fn every_printed_bound_is_rounded_outwards(
+        mantissas in proptest::collection::vec(1.0..10.0_f64, 6),
+        exponent in -290_i32..280,
+        width in -17_i32..3,
+        percent in 1_u32..100_000_000,
+    ) {
+        let (.., certificate) = certified("x'' + x + x^3/10 = 0", 1, "A = 1");
+        let mut proved = check(&certificate).expect("a proof");
+        let tolerance = f64::from(percent) * 1e-7;
+        let size = 10.0_f64.powi(exponent);
+        let range = |mantissa: f64| {
+            let lower = mantissa * size;
+            lindstedt::certificate::Range { lower, upper: lower * (1.0 + 10.0_f64.powi(width)) }
+        };
+        proved.frequency.middle = from_f64(mantissas[0] * size).expect("finite");
+        proved.frequency.radius = lindstedt::exact::Bound::exactly(mantissas[1] * size * 10.0_f64.powi(width));
+        let errors = proved.formula.as_mut().expect("errors");
+        errors.frequency = range(mantissas[2]);
+        errors.relative = range(mantissas[3]);
+        errors.deviation = range(mantissas[4]);
+        errors.drift = range(mantissas[5]);
+        let report = CertificateReport {
+            question: None,
+            certificate: (&certificate).into(),
+            certified: &proved,
+            validity: None,
+            tolerance,
+        };
+        let text = lindstedt::export::text::document(&lindstedt::report::certificate(&report), usize::MAX);
+        let fact = |name: &str| {
+            let line = text.lines().find(|line| line.trim_start().starts_with(name)).unwrap_or_else(|| panic!("{name}: {text}"));
+            line.trim_start()[name.len()..].trim().to_owned()
+        };
+        let number = |text: &str| exactly(text.trim().trim_end_matches('%'));
+        let ends = |words: &str| -> [Rational; 2] {
+            if let Some(upper) = words.strip_prefix("at most ") {
+                return [Rational::zero(), number(upper)];
+            }
+            match words.strip_prefix("between ").and_then(|words| words.split_once(" and ")) {
+                Some((lower, upper)) => [number(lower), number(upper)],
+                None => [number(words), number(words)],
+            }
+        };
+        let errors = proved.formula.expect("errors");
+        for (name, range, factor) in [
+            ("error of the formula's omega", errors.frequency, 1),
+            ("relative error", errors.relative, 100),
+            ("largest deviation at one phase", errors.deviation, 1),
+        ] {
+            let [lower, upper] = ends(&fact(name));
+            let exact = |end: f64| from_f64(end).expect("finite") * Integer::from(factor);
+            prop_assert!(lower <= exact(range.lower) && exact(range.upper) <= upper, "{name}: {range:?}: {}", fact(name));
+        }
+        let words = fact("omega ");
+        let (middle, radius) = words.split_once(" +- ").expect("an enclosure");
+        let apart = (number(middle) - &proved.frequency.middle).abs() + from_f64(proved.frequency.radius.value()).expect("finite");
+        prop_assert!(apart <= number(radius), "{words}: {:?}", proved.frequency);
+        let words = fact("deviation in time");
+        let (_, bound) = words.split_once("<= ").expect("a bound");
+        let (deviation, drift) = bound.split_once(" + ").expect("two terms");
+        let (drift, _) = drift.split_once("*|t|").expect("a factor");
+        prop_assert!(number(deviation) >= from_f64(errors.deviation.upper).expect("finite"), "{words}");
+        prop_assert!(number(drift) >= from_f64(errors.drift.upper).expect("finite"), "{words}");
+        // The tolerance is that which was meant, in full.
+        let words = fact("verdict");
+        let (_, tail) = words.split_once(" within ").or_else(|| words.split_once(" beyond ")).expect("a tolerance");
+        let (shown, _) = tail.split_once(" %").expect("percent");
+        prop_assert_eq!(number(shown), ratio(i64::from(percent), 100_000));
+    }
+}
+
+/// The fraction of a decimal, `2.5e-33`.
+fn exactly(text: &str) -> Rational {
+    let (digits, exponent) = text.split_once('e').unwrap_or((text, "0"));
+    let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let count: Rational = digits.replace('.', "").parse().expect("digits");
+    count * ratio(10, 1).pow(exponent.parse::<i32>().expect("an exponent") - decimals as i32)
 }

@@ -1,7 +1,10 @@
 //! Certificates of limit cycles against frequencies of another way: the exact series of van der Pol's equation, whose coefficients are
 //! fractions, to so high an order that what is left out is below the radius; and the judge's Runge-Kutta.
 
-use lindstedt::certificate::{CheckError, DampedCertificate, NotCertified, NotProved, certify_cycle, check_damped};
+use lindstedt::certificate::{
+    CheckError, DampedCertificate, JudgedFormula, NotCertified, NotProved, certify_cycle, certify_cycle_motion,
+    check_damped,
+};
 use lindstedt::exact::{Integer, Rational, from_f64, ratio, to_f64};
 use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::solution::AmplitudeConvention;
@@ -405,5 +408,98 @@ fn each_inequality_is_checked() {
         |certificate| certificate.sines[1] = Integer::from(1),
     ] {
         assert!(matches!(reason(&spoil), CheckError::Malformed(_)));
+    }
+}
+
+/// Half a period later it is the same cycle: held against a formula at the opposite phase, it would seem to be off by twice the amplitude.
+#[test]
+fn a_cycle_begins_at_the_positive_cosine_of_its_first_harmonic() {
+    let sound = certified(VAN_DER_POL, 2, "mu = 1/2");
+    let mut turned = sound.clone();
+    for list in [&mut turned.cosines, &mut turned.sines] {
+        list.iter_mut().for_each(|units| *units = -&*units);
+    }
+    // With X and F of the other sign the inverse has one in the row of 1/omega.
+    turned.inverse[0].iter_mut().for_each(|entry| *entry = -&*entry);
+    let reason = |certificate: &DampedCertificate| check_damped(certificate).expect_err("no certificate").to_string();
+    assert!(reason(&turned).contains("no positive cosine"), "{}", reason(&turned));
+    turned.formula = None;
+    assert!(reason(&turned).contains("no positive cosine"), "{}", reason(&turned));
+    // The same formula with a negative frequency, or as one of half the frequency.
+    let with = |change: fn(&mut JudgedFormula)| {
+        let mut other = sound.clone();
+        other.formula.as_mut().map(change);
+        reason(&other)
+    };
+    let negative = with(|formula| {
+        formula.frequency = -&formula.frequency;
+        formula.sines.iter_mut().for_each(|sine| *sine = -&*sine);
+    });
+    assert!(negative.contains("not positive"), "{negative}");
+    let slow = with(|formula| {
+        formula.frequency = &formula.frequency / Integer::from(2);
+        for list in [&mut formula.coefficients, &mut formula.sines] {
+            *list = list.iter().flat_map(|units| [units.clone(), Integer::zero()]).collect();
+        }
+    });
+    assert!(slow.contains("without a first harmonic"), "{slow}");
+    // A formula that begins elsewhere is turned, and off by as much.
+    let mut later = sound.clone();
+    let formula = later.formula.as_mut().expect("a formula");
+    for list in [&mut formula.coefficients, &mut formula.sines] {
+        list.iter_mut().skip(1).step_by(2).for_each(|units| *units = -&*units);
+    }
+    assert_eq!(
+        check_damped(&later).expect("a proof").formula,
+        check_damped(&sound).expect("a proof").formula
+    );
+}
+
+/// omega^2 = 1 - mu^2/8 has no root at mu = 3: the cycle is proved without it.
+#[test]
+fn a_cycle_is_proved_where_its_formula_has_no_value() {
+    let (oscillator, solution) = solved(VAN_DER_POL, None, 2);
+    let at: Values = "mu = 3".parse().expect("values");
+    let refused = certify_cycle(&oscillator, &solution, &at).expect_err("no formula");
+    assert!(
+        refused.help().is_some_and(|help| help.contains("--no-formula")),
+        "{refused}"
+    );
+    let (certificate, proved) = certify_cycle_motion(&oscillator, &solution, &at).expect("a proof");
+    assert_eq!(check_damped(&certificate).as_ref(), Ok(&proved));
+    assert!(proved.formula.is_none() && certificate.formula.is_none());
+    // The period of van der Pol's equation at mu = 3, from the tables of the literature: 8.8591.
+    let period = std::f64::consts::TAU / to_f64(&proved.frequency.middle);
+    assert!((period - 8.8591).abs() < 1e-4, "{period}");
+}
+
+/// The law as text gives the numbers to their last digits, or is refused; words are nothing that is proved.
+#[test]
+fn the_law_is_held_against_the_numbers() {
+    let sound = certified(VAN_DER_POL, 4, "mu = 1/2");
+    assert!(check_damped(&sound).expect("a proof").law_is_held);
+    let with_law = |law: &str, values: &str| {
+        let mut other = sound.clone();
+        let formula = other.formula.as_mut().expect("a formula");
+        (formula.law, formula.values) = (law.to_owned(), values.parse().expect("values"));
+        check_damped(&other)
+    };
+    for (law, values) in [
+        ("omega = 1", ""),
+        ("omega^2 = 1 - mu^2/8 + 23*mu^4/1536", "mu = 1/3"),
+        ("omega^2 = 1 - mu^2/8 + 23*mu^4/1537", "mu = 1/2"),
+        ("omega = 1 - mu^2/8 + 23*mu^4/1536", "mu = 1/2"),
+    ] {
+        assert!(matches!(with_law(law, values), Err(CheckError::Malformed(_))), "{law}");
+    }
+    for (law, values, is_held) in [
+        ("omega^2 = 1 - k/2 + 23*mu^4/1536, k = mu^2/4", "mu = 1/2", true),
+        ("omega^2 = 1 - mu^2/8 + 23*mu^4/1536", "", false),
+        ("a perfect formula", "", false),
+        ("0 = omega^2 - 1", "", false),
+        ("", "", false),
+    ] {
+        let proved = with_law(law, values).unwrap_or_else(|error| panic!("{law}: {error}"));
+        assert_eq!(proved.law_is_held, is_held, "{law}");
     }
 }

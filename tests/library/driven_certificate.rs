@@ -3,7 +3,7 @@
 use lindstedt::certificate::{
     Certified, CheckError, DampedCertificate, NotCertified, NotProved, certify_driven, check_damped,
 };
-use lindstedt::exact::{Integer, Rational, ratio, to_f64};
+use lindstedt::exact::{Integer, Rational, from_f64, ratio, to_f64};
 use lindstedt::export::json;
 use lindstedt::expr::{CompiledFunction, Expr, parse_expression};
 use lindstedt::method::{Options, solve, with_resonance_at};
@@ -119,6 +119,113 @@ fn shooting_finds_what_is_proved() {
         let text = serde_json::to_string(&document).expect("text");
         let read: json::DampedCertificateDocument = serde_json::from_str(&text).expect("a document");
         assert_eq!(read.read().expect("a certificate"), certificate, "{equation}");
+    }
+}
+
+/// X any number of periods of the drive later is a motion too, and -X where the equation is its own mirror image: whichever of them a file has,
+/// or its formula, the deviation is the same.
+#[test]
+fn a_formula_is_held_against_the_nearest_of_equal_motions() {
+    for (equation, about, at, copies) in [
+        // Period two, and -X is X a period of the drive later.
+        (
+            "x'' + x'/50 + (1 + cos(Omega*t)/5)*x + x^3/10 = 0",
+            0,
+            "Omega = 101/50",
+            2,
+        ),
+        ("x'' + x'/50 + x + x^3/10 - 5*cos(Omega*t) = 0", 0, "Omega = 4", 3),
+        ("x'' + x'/20 + x + x^2/5 - cos(Omega*t)/5 = 0", 0, "Omega = 1/2", 1),
+        (DUFFING, 0, "Omega = 6/5", 1),
+        // In one of two wells: the mirror image is in the other, half a period later.
+        ("x'' + x'/10 - x/2 + x^3/2 - cos(Omega*t)/50 = 0", 1, "Omega = 1", 2),
+    ] {
+        let oscillator = Oscillator::parse(equation)
+            .expect(equation)
+            .about(Expr::number(ratio(about, 1)));
+        let at: Values = at.parse().expect("values");
+        let asked = with_resonance_at(&oscillator, &Options::default(), &at).expect(equation);
+        let solution = solve(&oscillator, &asked).expect(equation);
+        let (certificate, proof) = certify_driven(&oscillator, &solution, &at).expect(equation);
+        assert_eq!(proof.copies, copies, "{equation}");
+        let errors = proof.formula.expect("errors");
+        let drive = certificate.drive.clone().expect("a drive");
+        for period in 1..drive.periods {
+            let mut other = certificate.clone();
+            turn(
+                &mut other,
+                std::f64::consts::TAU * period as f64 / drive.periods as f64,
+                1.0,
+            );
+            let again = check_damped(&other).expect("a proof").formula.expect("errors");
+            assert!(
+                (again.deviation.upper - errors.deviation.upper).abs() < 1e-12,
+                "{equation}"
+            );
+            assert!(
+                (again.deviation.lower - errors.deviation.lower).abs() < 1e-12,
+                "{equation}"
+            );
+        }
+        if !certificate.odd && copies > drive.periods {
+            let mut other = certificate.clone();
+            turn(&mut other, std::f64::consts::PI, -1.0);
+            let again = check_damped(&other).expect("a proof").formula.expect("errors");
+            assert!(
+                (again.deviation.upper - errors.deviation.upper).abs() < 1e-12,
+                "{equation}"
+            );
+        }
+    }
+}
+
+/// Gives the formula another phase and sign, in doubles; its law is left out, and what is claimed of its deviation widened a little.
+fn turn(certificate: &mut DampedCertificate, angle: f64, sign: f64) {
+    let bits = certificate.bits;
+    let formula = certificate.formula.as_mut().expect("a formula");
+    let value = |units: Option<&Integer>| {
+        units.map_or(0.0, |units| {
+            to_f64(&Rational::new(units.clone(), Integer::from(1) << bits))
+        })
+    };
+    let length = formula.coefficients.len().max(formula.sines.len());
+    let in_units = |value: f64| {
+        let exact = from_f64(value).expect("finite") * Rational::from_integer(Integer::from(1) << bits);
+        exact.floor().to_integer()
+    };
+    let (mut cosines, mut sines) = (vec![], vec![]);
+    for k in 0..length {
+        let (a, b) = (value(formula.coefficients.get(k)), value(formula.sines.get(k)));
+        let (sine, cosine) = (k as f64 * angle).sin_cos();
+        cosines.push(in_units(sign * (a * cosine + b * sine)));
+        sines.push(in_units(sign * (b * cosine - a * sine)));
+    }
+    (formula.coefficients, formula.sines) = (cosines, sines);
+    formula.law.clear();
+    let little = ratio(1, 1_000_000);
+    formula.deviation[0] = &formula.deviation[0] * (ratio(1, 1) - &little);
+    formula.deviation[1] = &formula.deviation[1] * (ratio(1, 1) + &little);
+    formula.amplitude_error = [Rational::zero(), ratio(1, 1)];
+}
+
+/// The displacement as text, at the amplitude and the phase of the steady motion, gives all numbers of the formula.
+#[test]
+fn the_law_of_a_driven_motion_is_held_against_the_numbers() {
+    for (equation, at) in [
+        (DUFFING, "Omega = 6/5"),
+        ("x'' + x'/20 + x + x^2/5 - cos(Omega*t)/5 = 0", "Omega = 1/2"),
+        ("x'' + x'/50 + (1 + cos(Omega*t)/5)*x + x^3/10 = 0", "Omega = 101/50"),
+    ] {
+        let (certificate, proof) = proved(equation, at);
+        assert!(proof.law_is_held, "{equation}: {:?}", certificate.formula);
+        let mut other = certificate.clone();
+        if let Some(formula) = &mut other.formula {
+            formula.law = formula.law.replacen("cos", "sin", 1);
+        }
+        assert!(
+            matches!(check_damped(&other), Err(CheckError::Malformed(_))),
+            "{equation}"
+        );
     }
 }
 

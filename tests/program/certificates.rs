@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
-use lindstedt::certificate::{check, check_damped};
+use lindstedt::certificate::{Enclosure, check, check_damped};
 use lindstedt::exact::{Rational, ratio};
 use lindstedt::export::json::{self, CertificateDocument, DampedCertificateDocument};
 use serde_json::{Value, json};
@@ -137,7 +137,8 @@ fn what_certify_writes_check_proves() {
     }
 }
 
-/// omega from below and from above, by the second program; `None` where it does not prove the certificate.
+/// omega, of a driven motion the amplitude, from below and from above, by the second program; `None` where it does not prove the
+/// certificate with all its claims.
 fn by_python(python: &Path, file: &Path) -> Option<[Rational; 2]> {
     let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/check_certificate.py");
     let output = Command::new(python)
@@ -151,63 +152,244 @@ fn by_python(python: &Path, file: &Path) -> Option<[Rational; 2]> {
         assert!(errors.starts_with("not proved: "), "{errors}");
         return None;
     }
-    let [_, lower, upper]: [String; 3] = serde_json::from_slice(&output.stdout).expect("three texts");
-    let fraction = |text: &str| {
+    let proved: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let ends = proved.get("omega").or(proved.get("amplitude")).expect("two ends");
+    let fraction = |place: usize| {
+        let text = ends[place].as_str().expect("text");
         let digits: Rational = text.replace('.', "").parse().expect("digits");
         digits / ratio(10, 1).pow(36)
     };
-    Some([fraction(&lower), fraction(&upper)])
+    Some([fraction(0), fraction(1)])
 }
+
+/// What the library proves of a document of any kind: omega, or the amplitude.
+fn by_library(document: &Value) -> Result<Enclosure, String> {
+    let unread = |error: serde_json::Error| error.to_string();
+    let proved = match document["ode"].as_str() {
+        Some("x''+f(x)=0") => {
+            let certificate = read(document)
+                .map_err(unread)?
+                .read()
+                .map_err(|error| error.to_string())?;
+            check(&certificate)
+        }
+        _ => {
+            let document: DampedCertificateDocument = serde_json::from_value(document.clone()).map_err(unread)?;
+            check_damped(&document.read().map_err(|error| error.to_string())?)
+        }
+    };
+    let proved = proved.map_err(|error| error.to_string())?;
+    Ok(proved.amplitude.unwrap_or(proved.frequency))
+}
+
+/// A change of a document by which it is no proof any more.
+type Tamper = fn(&mut Value);
 
 #[test]
 fn a_second_program_in_python_proves_the_same() {
-    let Some(python) = python() else {
-        eprintln!("python3 is not here: the second program was not run");
-        return;
-    };
-    let folder = folder("python");
-    for arguments in [
-        &["pendulum", "--at", "A=3/2"][..],
-        &["pendulum", "--at", "A=3", "--order", "6"],
-        &["x'' + x - x^3/6 = 0", "--at", "A=2"],
-        &["x'' + x + x^2/5 = 0", "--at", "A=1/2"],
-        &["x'' + x^3 = 0", "--at", "A=1"],
-        &[
-            "duffing",
-            "--at",
-            "A=1",
-            "--at",
-            "eps=10",
-            "--method",
-            "harmonic-balance",
-        ],
-    ] {
-        let (file, document) = certified(&folder, arguments);
-        let certificate = read(&document).expect("a document").read().expect("a certificate");
-        let own = check(&certificate).expect("a proof").frequency;
-        let [lower, upper] = by_python(&python, &file).unwrap_or_else(|| panic!("{arguments:?}"));
-        // Both are true, so that they overlap; and each is as narrow.
-        let radius = lindstedt::exact::from_f64(own.radius.value()).expect("a finite radius");
-        assert!(
-            lower <= &own.middle + &radius && &own.middle - &radius <= upper,
-            "{arguments:?}"
-        );
-        assert!(&upper - &lower < ratio(1, 1_000_000_000).pow(3), "{arguments:?}");
-        // Tampered with, it is no proof for either.
-        for tamper in [
-            (|document: &mut Value| document["A"] = json!("1499999/1000000")) as fn(&mut Value),
-            |document| document["claim_r"] = json!("1e-60"),
-            |document| document["c"][1] = json!("1"),
-            |document| document["f"] = json!(["0", "2"]),
-            |document| document["A_block"][1][0] = json!("0"),
-        ] {
-            let mut changed = document.clone();
-            tamper(&mut changed);
-            std::fs::write(&file, changed.to_string()).expect("the document is written");
+    let of_all: [Tamper; 7] = [
+        |document| document["claim_r"] = json!("1e-60"),
+        |document| document["c"][1] = json!("1"),
+        |document| document["A_block"][1][0] = json!("0"),
+        |document| document["odd"] = json!("yes"),
+        |document| document["formula"]["phase_error"][0] = json!("1"),
+        |document| document["formula"]["phase_error"][1] = json!("1e-12"),
+        |document| document["more"] = json!("1"),
+    ];
+    let of_motions: [Tamper; 5] = [
+        |document| document["A"] = json!("1499999/1000000"),
+        |document| document["f"] = json!(["0", "2"]),
+        |document| document["formula"]["frequency_error"][1] = json!("1e-12"),
+        |document| document["formula"]["drift"][0] = json!("1"),
+        |document| {
+            document["formula"]["omega"] = json!(format!("-{}", document["formula"]["omega"].as_str().unwrap_or("1")))
+        },
+    ];
+    let of_cycles: [Tamper; 6] = [
+        |document| document["g"] = json!(["-1/2", "0", "501/1000"]),
+        |document| document["p"] = json!("1"),
+        |document| document["s"][1] = json!("1"),
+        half_a_period_later,
+        |document| document["formula"]["frequency_error"][0] = json!("1e-2"),
+        |document| document["formula"]["drift"][1] = json!("1e-12"),
+    ];
+    let of_driven: [Tamper; 5] = [
+        |document| document["drive"]["Omega"] = json!("1001/1000"),
+        |document| document["drive"]["n"] = json!(7),
+        |document| document["sigma_log2"] = json!(1),
+        |document| document["h"] = json!("x + x^3/9 - c"),
+        |document| document["formula"]["amplitude_error"][1] = json!("1e-12"),
+    ];
+    let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");
+    let proved = |name: &str, questions: &[&[&str]], tampers: &[Tamper]| {
+        let Some(python) = python() else {
+            eprintln!("python3 is not here: the second program was not run");
+            return;
+        };
+        let folder = folder(name);
+        for (index, arguments) in questions.iter().enumerate() {
+            let (file, document) = certified(&folder, arguments);
+            let own = by_library(&document).unwrap_or_else(|error| panic!("{arguments:?}: {error}"));
+            let [lower, upper] = by_python(&python, &file).unwrap_or_else(|| panic!("{arguments:?}"));
+            // Both are true, so that they overlap; and each is as narrow.
+            let radius = lindstedt::exact::from_f64(own.radius.value()).expect("a finite radius");
+            assert!(
+                lower <= &own.middle + &radius && &own.middle - &radius <= upper,
+                "{arguments:?}"
+            );
+            assert!(&upper - &lower < ratio(1, 1_000_000_000).pow(3), "{arguments:?}");
+            // Tampered with, it is no proof for either.
+            let all = of_all.iter().chain(tampers).enumerate();
+            for (which, tamper) in all.filter(|_| index == 0) {
+                let mut changed = document.clone();
+                tamper(&mut changed);
+                std::fs::write(&file, changed.to_string()).expect("the document is written");
+                assert_eq!(by_python(&python, &file), None, "{arguments:?}: {which}");
+                assert!(by_library(&changed).is_err(), "{arguments:?}: {which}");
+            }
+            // A key that stands twice.
+            let twice = document.to_string().replacen('{', "{\"odd\": true, ", 1);
+            std::fs::write(&file, twice).expect("the document is written");
             assert_eq!(by_python(&python, &file), None, "{arguments:?}");
-            let certificate = read(&changed).expect("a document").read().expect("a certificate");
-            assert!(check(&certificate).is_err(), "{arguments:?}");
+            let checked = run(&["check", file.to_str().expect("a path in text")]);
+            assert_eq!(checked.status.code(), Some(1), "{arguments:?}");
         }
+    };
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let questions: [&[&str]; 3] = [
+                &["pendulum", "--at", "A=3/2"],
+                &["x'' + x + x^2/5 = 0", "--at", "A=1/2"],
+                &[
+                    "duffing",
+                    "--at",
+                    "A=1",
+                    "--at",
+                    "eps=10",
+                    "--method",
+                    "harmonic-balance",
+                ],
+            ];
+            proved("python", &questions, &of_motions);
+        });
+        scope.spawn(|| {
+            let asymmetric = "x'' - (1 - x^2)*x'/5 + x + x^2/10 = 0";
+            proved(
+                "python-cycles",
+                &[&["van-der-pol", "--at", "mu=1/5"], &[asymmetric]],
+                &of_cycles,
+            );
+        });
+        scope.spawn(|| {
+            let files = ["forced-duffing", "parametric", "driven-well"].map(|name| format!("{examples}/{name}.toml"));
+            let questions = files.each_ref().map(|file| vec![file.as_str()]);
+            let questions = questions.each_ref().map(Vec::as_slice);
+            proved("python-driven", &questions, &of_driven);
+        });
+    });
+}
+
+/// The same cycle half a period later, with an inverse that belongs to it, and as far off the formula as that is.
+fn half_a_period_later(document: &mut Value) {
+    let turned = |text: &Value| match text.as_str().unwrap_or("0") {
+        "0" => json!("0"),
+        text => json!(text.strip_prefix('-').map_or_else(|| format!("-{text}"), str::to_owned)),
+    };
+    for key in ["c", "s"] {
+        document[key] = document[key].as_array().expect("a list").iter().map(turned).collect();
+    }
+    document["A_block"][0] = document["A_block"][0]
+        .as_array()
+        .expect("a row")
+        .iter()
+        .map(turned)
+        .collect();
+    document["formula"]["phase_error"] = json!(["1", "10"]);
+}
+
+/// What a file says never steers a terminal, and stands under "Proved" only where it is what was proved.
+#[test]
+fn words_of_a_file_are_words() {
+    let folder = folder("words");
+    let (file, document) = certified(&folder, &["pendulum", "--at", "A=1", "--order", "2"]);
+    let path = file.to_str().expect("a path in text");
+    let checked = |document: &str| {
+        std::fs::write(&file, document).expect("a file");
+        let output = run(&["check", path]);
+        let text = String::from_utf8(output.stdout).expect("text");
+        (text, String::from_utf8(output.stderr).expect("text"))
+    };
+    let steers = |text: &str| {
+        text.chars()
+            .any(|letter| letter != '\n' && lindstedt::export::is_invisible(letter))
+    };
+    let (text, _) = checked(&document.to_string());
+    let (proved, _) = text.split_once("\n\nThe proof").expect("a proof");
+    assert!(proved.contains("omega^2 = 1 - A^2/8 at A = 1"), "{text}");
+    for law in [
+        "omega = 0.7\u{1b}[1A\u{1b}[2K",
+        "\n\nProved\n  omega  2",
+        "certified by all\u{9b}31m",
+        "a\u{202e}b",
+    ] {
+        let mut other = document.clone();
+        other["formula"]["law"] = json!(law);
+        let (text, errors) = checked(&other.to_string());
+        assert!(!steers(&text) && !steers(&errors), "{text:?} {errors:?}");
+        if !text.is_empty() {
+            assert_eq!(text.matches("\nProved\n").count(), 1, "{text}");
+            let (proved, words) = text.split_once("\n\nWords of the file").expect("words");
+            assert!(!proved.contains("by all") && words.contains("\\u{"), "{text}");
+        }
+    }
+    // Keys and texts that are quoted in a refusal.
+    let mut keyed = document.clone();
+    keyed["\u{1b}[31m\nerror: none"] = json!(1);
+    let mut kind = document.clone();
+    kind["ode"] = json!("\u{1b}]0;title\u{7}");
+    for other in [keyed, kind, json!({"ode": "\u{1b}[2J", "schema": "\u{1b}[2J"})] {
+        let (text, errors) = checked(&other.to_string());
+        assert!(
+            text.is_empty() && errors.starts_with("error: ") && !steers(&errors),
+            "{errors:?}"
+        );
+        assert_eq!(errors.lines().count(), 1, "{errors:?}");
+    }
+    // A law that gives other numbers is none.
+    let mut other = document.clone();
+    other["formula"]["law"] = json!("omega^2 = 1 - A^2/16");
+    let (text, errors) = checked(&other.to_string());
+    assert!(
+        text.is_empty() && errors.contains("another frequency than its numbers"),
+        "{errors}"
+    );
+}
+
+/// Where the formula has no real value the motion is proved, and it is said that no formula is judged.
+#[test]
+fn a_motion_is_proved_without_its_formula() {
+    let folder = folder("alone");
+    let question = ["pendulum", "--order", "2", "--at", "A=3"];
+    let refused = run(&[&["certify"], &question[..]].concat());
+    let errors = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(
+        errors.contains("not real") && errors.contains("--no-formula"),
+        "{errors}"
+    );
+    let question = [&question[..], &["--no-formula"]].concat();
+    let said = run(&[&["certify"], &question[..]].concat());
+    let said = String::from_utf8_lossy(&said.stdout);
+    let (file, document) = certified(&folder, &question);
+    assert_eq!(document["formula"], Value::Null);
+    let checked = run(&["check", file.to_str().expect("a path in text"), "--tolerance", "1e-9"]);
+    assert_eq!(checked.status.code(), Some(0));
+    // pi/(2 K(sin(3/2))).
+    for text in [said, String::from_utf8_lossy(&checked.stdout)] {
+        assert!(
+            text.contains("0.388918324690310") && text.contains("none is judged"),
+            "{text}"
+        );
     }
 }
 
@@ -379,6 +561,16 @@ fn what_is_asked_for_in_vain_is_said() {
             "a proof has no picture",
         ),
         (&["certify", "pendulum", "--at", "A=1", "--format", "csv"], 2, "table"),
+        (
+            &["certify", "examples/forced-duffing.toml", "--no-formula"],
+            1,
+            "nothing to find a driven motion by",
+        ),
+        (
+            &["certify", "pendulum", "--at", "A=1", "--no-formula", "--range", "1:2"],
+            2,
+            "cannot be used with",
+        ),
         (
             &["certify", "pendulum", "--at", "A=1", "--range", "2:1"],
             2,

@@ -188,7 +188,7 @@ pub fn compare(
     let at_first = by_start(first, at);
     let numbers = checked_numbers(first, &at_first)?;
     let meant = meant(oscillator, first, &numbers);
-    let (true_motion, reason) = match TrueMotion::of(oscillator, &meant, &numbers) {
+    let (true_motion, reason) = match super::true_motion(oscillator, first, &meant, &numbers) {
         Ok(motion) => (Some(motion), None),
         Err(error) if error.leaves_the_truth_open() => (None, Some(error)),
         Err(error) => return Err(error.into()),

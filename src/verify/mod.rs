@@ -319,7 +319,7 @@ pub(crate) fn judge_to(
     let numbers = checked_numbers(solution, at)?;
     let solution = settled.as_ref().unwrap_or(solution);
     let meant = meant(oscillator, solution, &numbers);
-    let truth = TrueMotion::of(oscillator, &meant, &numbers)?;
+    let truth = true_motion(oscillator, solution, &meant, &numbers)?;
     let (found, reason) = numbers_or_reason(oscillator, solution, &numbers);
     let frequency = found.as_ref().map(|found| found.frequency_squared.sqrt());
     let relative_error = frequency.map(|frequency| frequency / truth.frequency - 1.0);
@@ -499,7 +499,7 @@ pub fn motions(
     }
     let solution = settled.as_ref().unwrap_or(solution);
     let meant = meant(oscillator, solution, &numbers);
-    let truth = TrueMotion::of(oscillator, &meant, &numbers)?;
+    let truth = true_motion(oscillator, solution, &meant, &numbers)?;
     if !truth.has_path() {
         return Err(VerificationError::NoPath);
     }
@@ -620,6 +620,20 @@ fn meant(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
             expected()
         },
     }
+}
+
+/// The true motion that an answer is meant for.
+///
+/// # Errors
+/// There is none, or it cannot be followed; where motions are periodic is said with it.
+fn true_motion(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    meant: &Meant,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<TrueMotion, VerificationError> {
+    let found = TrueMotion::of(oscillator, meant, numbers);
+    found.map_err(|error| validity::why_no_motion(oscillator, solution, numbers, error))
 }
 
 /// The force about the equilibrium of an answer; `None` where a symbol of it has no number.

@@ -156,7 +156,7 @@ pub fn certify(
         return Err(NotCertified::Sines);
     }
     let samples = verify::motions(oscillator, solution, at)?
-        .ok_or(NoMotion::NotReal)?
+        .ok_or(NoMotion::Unknown)?
         .truth;
     let (mu, harmonics) = from_samples(&samples, question.odd);
     let mut certificate = question.certificate(mu, &harmonics, judged);

@@ -91,6 +91,9 @@ pub enum NoNumbers {
     /// omega^2 is not positive.
     #[error("not real: omega^2 <= 0")]
     NotReal,
+    /// omega itself is not positive, of a law for omega.
+    #[error("not positive: omega <= 0")]
+    NotPositive,
     /// The law is larger than any number.
     #[error("{law} is beyond the range of double precision, 1.8e308")]
     LawBeyond {
@@ -150,6 +153,14 @@ pub enum NoNumbers {
 }
 
 impl NoNumbers {
+    /// That the frequency of an answer is not positive, of the law that it is given by.
+    pub(crate) fn not_positive(solution: &Solution) -> Self {
+        match law_name(solution) {
+            "omega" => Self::NotPositive,
+            _ => Self::NotReal,
+        }
+    }
+
     /// Whether there is no frequency because it would not be real.
     pub fn is_not_real(&self) -> bool {
         matches!(
@@ -396,6 +407,19 @@ fn is_exact(solution: &Solution) -> bool {
 /// Whether the law is that of a motion `A cos(theta)`.
 fn of_one_term(solution: &Solution) -> bool {
     by_size(solution) && !is_exact(solution) && solution.law.system().is_none()
+}
+
+/// The law that the frequency of an answer is taken from: `omega^2`, of which it is the root, or `omega`.
+pub(crate) fn law_name(solution: &Solution) -> &'static str {
+    // What is solved by numbers gives omega itself, but for the one-term laws, which are integrals for omega^2.
+    let by_integral = solution.law.quadrature().is_some() && solution.method != Method::Exact;
+    match solution.law.closed_form() {
+        _ if solution.law.frequency_squared().is_some() || solution.law.relation().is_some() || by_integral => {
+            "omega^2"
+        }
+        Some(form) => form.name(),
+        None => "omega",
+    }
 }
 
 /// The amplitude; one where the law is free of it and none is given.

@@ -48,13 +48,13 @@ use crate::decimal::decimal;
 use crate::exact::Doubles;
 use crate::expr::{EvaluationError, Expr, ExprError};
 use crate::method::numbers::{
-    Known, NoNumbers, Numbers, evaluate, frequency_squared_along, half_a_period, symbol_values,
+    Known, NoNumbers, Numbers, evaluate, frequency_squared_along, half_a_period, law_name, symbol_values,
 };
 use crate::numeric::period::PeriodError;
 use crate::numeric::return_map::NoLimitCycle;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Method, Solution};
+use crate::solution::{AmplitudeConvention, Solution};
 use crate::symbol::Symbol;
 use crate::trajectory::TrajectoryError;
 use crate::values::Values;
@@ -356,7 +356,7 @@ pub(crate) fn judge_to(
         reason,
         true_frequency: truth.frequency,
         relative_error,
-        judged_on: judged_on(solution),
+        judged_on: law_name(solution),
         error_of_omega: series_of_omega(solution, &numbers).map(|omega| omega / truth.frequency - 1.0),
         max_deviation,
         residual: residual.filter(|value| value.is_finite()),
@@ -546,9 +546,9 @@ fn numbers_or_reason(
 ) -> (Option<Numbers>, Option<NoNumbers>) {
     match evaluate(oscillator, solution, numbers) {
         Ok(found) if found.frequency_squared > 0.0 && found.frequency_squared.is_finite() => (Some(found), None),
-        Ok(_) => (None, Some(NoNumbers::NotReal)),
+        Ok(_) => (None, Some(NoNumbers::not_positive(solution))),
         Err(NoNumbers::NoValue | NoNumbers::Undefined { .. }) if law_overflows(solution, numbers) => {
-            let law = judged_on(solution);
+            let law = law_name(solution);
             (None, Some(NoNumbers::LawBeyond { law }))
         }
         Err(reason) => (None, Some(reason)),
@@ -563,19 +563,6 @@ fn law_overflows(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> bool {
         (None, None) => return false,
     };
     law.overflow(numbers).is_some()
-}
-
-/// The law that [`formula_frequency`] takes.
-fn judged_on(solution: &Solution) -> &'static str {
-    // What is solved by numbers gives omega itself, but for the one-term laws, which are integrals for omega^2.
-    let by_integral = solution.law.quadrature().is_some() && solution.method != Method::Exact;
-    match solution.law.closed_form() {
-        _ if solution.law.frequency_squared().is_some() || solution.law.relation().is_some() || by_integral => {
-            "omega^2"
-        }
-        Some(form) => form.name(),
-        None => "omega",
-    }
 }
 
 /// omega by its own series, where the formula has one of omega^2 as well.

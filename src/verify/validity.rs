@@ -12,7 +12,7 @@ use crate::conservative::force::Force;
 use crate::conservative::well::Well;
 use crate::decimal::significant;
 use crate::method::inertia;
-use crate::method::numbers::{error_of_integral, frequency_squared_of};
+use crate::method::numbers::{error_of_integral, frequency_squared_of, law_name};
 use crate::method::table::{Entry, Sees};
 use crate::numeric::ode::energy::PeriodError;
 use crate::numeric::ode::root::find_root;
@@ -218,8 +218,9 @@ fn positive_from(
     let last = values.windows(2).rposition(|pair| pair[0] <= 0.0 && pair[1] > 0.0)?;
     let zero = find_root(squared, place(last), place(last + 1)).ok()?;
     let at = significant(zero.copysign(amplitude), 6);
+    let law = law_name(solution);
     Some(Range {
-        text: format!("omega^2 of the formula is positive from {symbol} = {at} on"),
+        text: format!("{law} of the formula is positive from {symbol} = {at} on"),
         outside: amplitude.abs() <= zero,
     })
 }
@@ -274,7 +275,7 @@ fn vanishing(
             return Some(Range {
                 text: match is_pole {
                     true => format!("the formula has a pole at {symbol} = {at}"),
-                    false => format!("omega^2 of the formula reaches zero at {symbol} = {at}"),
+                    false => format!("{} of the formula reaches zero at {symbol} = {at}", law_name(solution)),
                 },
                 outside: amplitude.abs() >= zero,
             });

@@ -619,3 +619,30 @@ fn inertia_that_depends_on_the_position_has_its_wells() {
     let runs_away = refused("x'' + x + x'^2 = 0", "0.6");
     assert!(runs_away.contains("its speed grows beyond all bounds"), "{runs_away}");
 }
+
+/// Averaged to second order, `x'' + x + x'^2 = 0` has `omega = 1 - A^2/6`: it is omega that is negative, and no square.
+#[test]
+fn a_negative_frequency_is_said_of_omega() {
+    let oscillator = Oscillator::parse("x'' + x + x'^2 = 0").unwrap();
+    let table = lindstedt::verify::comparison::compare(&oscillator, &"A = -3".parse().unwrap(), None, 0.01).unwrap();
+    let reason = |method: Method, order: u32| {
+        let mut rows = table.rows.iter();
+        let row = rows.find(|row| row.solution.method == method && row.solution.order == order);
+        row.and_then(|row| row.reason.as_ref()).map(ToString::to_string)
+    };
+    assert_eq!(
+        reason(Method::Averaging, 2).as_deref(),
+        Some("not positive: omega <= 0")
+    );
+    let solution = &table
+        .rows
+        .iter()
+        .find(|row| row.solution.method == Method::Averaging && row.solution.order == 2);
+    let motion = solution.unwrap().solution.motion_at(&"A = -3".parse().unwrap());
+    assert_eq!(motion.unwrap_err().to_string(), "not positive: omega <= 0");
+    // omega^2 = 1 - A^2/3 - 4 A^3/9 - 43 A^4/72.
+    assert_eq!(
+        reason(Method::LindstedtPoincare, 4).as_deref(),
+        Some("not real: omega^2 <= 0")
+    );
+}

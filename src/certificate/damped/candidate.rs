@@ -43,7 +43,7 @@ pub fn certify_cycle(
     }
     let [damping, force] = lienard(oscillator, at)?;
     let samples = verify::motions(oscillator, solution, at)?
-        .ok_or(NoMotion::NotReal)?
+        .ok_or(NoMotion::Unknown)?
         .truth;
     let (values, _) = at.split(&oscillator.parameters);
     let equilibrium = solution.equilibrium.substitute_all(&values)?;

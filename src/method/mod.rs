@@ -524,6 +524,7 @@ impl Refusal {
             | Self::AmplitudeNotFree { term }
             | Self::Oscillator(
                 OscillatorError::NotSmall { term, .. }
+                | OscillatorError::OneSided { term, .. }
                 | OscillatorError::NotPolynomial(term)
                 | OscillatorError::Taylor(TaylorError::NotAnalytic { term, .. }),
             ) => term.words(),

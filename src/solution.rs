@@ -192,6 +192,8 @@ pub struct Solution {
     pub law: Law,
     /// The motion, equilibrium included.
     pub displacement: FourierSeries<Polynomials>,
+    /// The motion from rest at `A` as an expression in `t`, equilibrium included, where it is known without a series.
+    pub closed_motion: Option<Expr>,
     /// Self-excited oscillators: the cycle whose amplitude the equation itself determines.
     pub limit_cycle: Option<LimitCycle>,
     /// Motions that are not periodic: the slow equations of amplitude and phase.

@@ -779,6 +779,9 @@ fn move_back(solution: &mut Solution, oscillator: &Oscillator, centred: &Centred
     if let Some(response) = &mut solution.response {
         response.motion = &response.motion + &centred.written;
     }
+    if let Some(motion) = &mut solution.closed_motion {
+        *motion = &*motion + &centred.written;
+    }
     solution.equation = oscillator.equation();
     if centred.numerical {
         solution.round_coefficients();

@@ -8,14 +8,14 @@ use std::collections::BTreeMap;
 
 use num_traits::Zero as _;
 
-use super::exact_motion::motion_about;
+use super::exact_motion::{cosines, motion_about};
 use super::table::{Choice, Entry, Motion};
 use super::{balance, first_order, harmonic_balance, homotopy_analysis, inertia, one_term};
 use crate::conservative::force::Force;
 use crate::conservative::is_odd;
 use crate::decimal::significant;
 use crate::exact::{Doubles, Polynomial};
-use crate::expr::{EvaluationError, Rounded};
+use crate::expr::{CompiledFunction, EvaluationError, Expr, Rounded};
 use crate::numeric::ode::energy::PeriodError;
 use crate::numeric::ode::root::find_minimum;
 use crate::oscillator::Oscillator;
@@ -852,10 +852,30 @@ fn exact_motion(
     let found = motion_about(&force, start);
     let (period, cosine) = found.map_err(|error| force.why_no_period(start, error))?;
     let frequency = std::f64::consts::TAU / period;
+    // A motion that is written down is judged as it is written.
+    let written = solution.closed_motion.as_ref();
+    let written = written.and_then(|motion| along(solution, motion, numbers, frequency));
     Ok((
         frequency * frequency,
-        FourierSeries::from_parts(Doubles, cosine, vec![]),
+        FourierSeries::from_parts(Doubles, written.unwrap_or(cosine), vec![]),
     ))
+}
+
+/// The coefficients of `cos(k theta)` of a motion in closed form; `None` where it has no value.
+fn along(solution: &Solution, motion: &Expr, numbers: &BTreeMap<Symbol, f64>, frequency: f64) -> Option<Vec<f64>> {
+    let mut values = numbers.clone();
+    values.extend(solution.defined_values(&|name| numbers.get(&name).copied()).ok()?);
+    let time = Symbol::new("t");
+    let names: Vec<Symbol> = std::iter::once(time).chain(values.keys().copied()).collect();
+    let function = CompiledFunction::new(motion, &names).ok()?;
+    let arguments: Vec<f64> = std::iter::once(0.0).chain(values.values().copied()).collect();
+    let place = |theta: f64| {
+        let mut arguments = arguments.clone();
+        arguments[0] = theta / frequency;
+        function.call(&arguments)
+    };
+    let cosine = cosines(&place);
+    cosine.iter().all(|value| value.is_finite()).then_some(cosine)
 }
 
 /// The hbar between -2 and 0 at which the squared residual of the original equation is least.

@@ -646,3 +646,48 @@ fn a_negative_frequency_is_said_of_omega() {
         Some("not real: omega^2 <= 0")
     );
 }
+
+/// Motions that are known in closed form are judged as they are written, against Runge-Kutta; of a pendulum `sin(x/2)` is a `sn`, of `x^3` the
+/// motion a `cn`, of `x^2` a `sn^2`.
+#[test]
+fn exact_motions_in_closed_form_are_the_true_ones() {
+    for (equation, amplitudes, written) in [
+        ("x'' + 4*x = 0", ["2", "-1"], "A*cos(2*t)"),
+        ("x'' + x^3 = 0", ["2", "-1/10"], "A*cn(A*t, 1/2)"),
+        (
+            "x'' + x + x^3 = 0",
+            ["20", "-1/2"],
+            "A*cn(t*sqrt(1 + A^2), A^2/(2*(1 + A^2)))",
+        ),
+        (
+            "x'' + x - x^3 = 0",
+            ["99/100", "-1/2"],
+            "A*cn(t*sqrt(1 - A^2), -A^2/(2*(1 - A^2)))",
+        ),
+        ("x'' + 2*sin(3*x) = 0", ["1", "-1/2"], "sn("),
+        ("x'' + x + x^2 = 0", ["9/20", "-9/10"], "sn("),
+        ("x'' + x^2 - 2 = 0", ["7/5", "-2"], "sn("),
+        ("x'' + x - x^3 + 2*x^5 = 0", ["3/2", "-1/2"], "dn("),
+    ] {
+        for amplitude in amplitudes {
+            let found = judged(equation, Method::Exact, None, amplitude);
+            let deviation = found.max_deviation.expect("a motion");
+            assert!(deviation < 1e-8, "{equation} from {amplitude}: {deviation:e}");
+        }
+        let oscillator = Oscillator::parse(equation).unwrap();
+        let options = Options {
+            method: Some(Method::Exact),
+            ..Options::default()
+        };
+        let solution = solve(&oscillator, &options).unwrap();
+        let motion = solution.closed_motion.as_ref().expect("a motion").to_string();
+        assert!(motion.contains(written), "{equation}: {motion}");
+        // What is exported reads back.
+        let document = lindstedt::export::json::solution(&solution, None);
+        assert_eq!(
+            document.read().unwrap().closed_motion,
+            solution.closed_motion,
+            "{equation}"
+        );
+    }
+}

@@ -4,6 +4,7 @@
 //!
 //! What prints as text prints as LaTeX: both read the same formulas.
 
+use std::collections::BTreeSet;
 use std::fmt;
 
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials};
@@ -144,6 +145,37 @@ impl Line {
         Self {
             words: words.into(),
             ..self
+        }
+    }
+}
+
+impl Line {
+    /// The names in its formulas.
+    pub fn symbols(&self) -> BTreeSet<Symbol> {
+        self.equal.iter().flat_map(Formula::symbols).collect()
+    }
+}
+
+impl Formula {
+    /// The names in it, those that are integrated over included.
+    pub fn symbols(&self) -> BTreeSet<Symbol> {
+        match self {
+            Self::Expression(expression) => expression.symbols(),
+            Self::Waves(series) => series.numerators().flat_map(Polynomial::symbols).collect(),
+            Self::Oscillator { of, square } => square.symbols().into_iter().chain([*of]).collect(),
+            Self::AtZero { of, .. } => [*of].into(),
+            Self::Integral {
+                factor,
+                from,
+                to,
+                integrand,
+                variable,
+            } => {
+                let ends = [factor, from, to].into_iter().flat_map(Expr::symbols);
+                ends.chain(integrand.symbols()).chain([*variable]).collect()
+            }
+            Self::OverRoot(numerator, inside) => numerator.symbols().into_iter().chain(inside.symbols()).collect(),
+            Self::Slope { factor, of, by } => factor.symbols().into_iter().chain([*of, *by]).collect(),
         }
     }
 }

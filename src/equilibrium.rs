@@ -18,6 +18,7 @@
 
 mod force;
 mod inverse;
+mod one_sided;
 mod search;
 mod shift;
 
@@ -131,7 +132,15 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
         Err(_) => force.vanishes_towards_zero() || matches!(pull, Some(Pull::Passed | Pull::Inverse)),
     };
     if rests {
-        return match force.is_stable_at_zero() {
+        let stable = force.is_stable_at_zero();
+        // Letters are given the benefit of the doubt, but a root that has no value is no matter of theirs.
+        if (!stable || !force.is_numerical())
+            && let Some(error) = one_sided::refusal(oscillator, &still)
+            && force.stable_equilibria().positions.is_empty()
+        {
+            return Err(error);
+        }
+        return match stable {
             true => Ok(Centred {
                 endless: pull == Some(Pull::Inverse),
                 // Letters may have made it a hilltop.

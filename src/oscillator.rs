@@ -157,6 +157,22 @@ pub enum OscillatorError {
         /// Whether motions run through it, over the wells on both sides.
         passed: bool,
     },
+    /// A root that is real on one side of the equilibrium alone, so that nothing pulls back from the other.
+    #[error(
+        "no motion swings about {coordinate} = 0: for {coordinate} {side} 0 there is no force, because `{term}` has no real value there"
+    )]
+    OneSided {
+        /// The coordinate.
+        coordinate: Symbol,
+        /// `<` or `>`.
+        side: char,
+        /// The term with the root.
+        term: Quotation,
+        /// What to write instead of the root, for a force that pulls back on both sides.
+        odd: String,
+        /// For one that is zero where the root has no value, where another term pulls back there.
+        zero: Option<String>,
+    },
     /// What was asked for is no stable equilibrium.
     #[error("{coordinate} = {asked} is no stable equilibrium{}", stable_ones(*coordinate, .stable))]
     NoSuchEquilibrium {
@@ -275,6 +291,14 @@ impl OscillatorError {
                 "methods that need no linear part: `",
                 [Method::ParameterExpansion, Method::HarmonicBalance],
             ),
+            Self::OneSided { odd, zero, .. } => Advice::words(match zero {
+                Some(zero) => {
+                    format!(
+                        "write `{odd}` for a force that pulls back on both sides, or `{zero}` for none where the root has no value"
+                    )
+                }
+                None => format!("write `{odd}` for a force that pulls back on both sides"),
+            }),
             Self::SymbolicEquilibrium(_) => {
                 Advice::words("give numbers for the parameters, or measure x from the equilibrium")
             }

@@ -192,6 +192,8 @@ pub struct Solution {
     pub law: Law,
     /// The motion, equilibrium included.
     pub displacement: FourierSeries<Polynomials>,
+    /// The motion from rest at `A` as an expression in `t`, equilibrium included, where it is known without a series.
+    pub closed_motion: Option<Expr>,
     /// Self-excited oscillators: the cycle whose amplitude the equation itself determines.
     pub limit_cycle: Option<LimitCycle>,
     /// Motions that are not periodic: the slow equations of amplitude and phase.
@@ -421,14 +423,24 @@ impl Solution {
             Shown::Quadrature(_) | Shown::System(_) if self.method.counts() == Counts::Harmonics => {
                 let harmonics = self.balanced_harmonics();
                 let kept: Vec<String> = harmonics.iter().map(|entry| entry.0.to_string()).collect();
-                return format!("harmonics {} balanced, solved by numbers", kept.join(", "));
+                format!("harmonics {} balanced, solved by numbers", kept.join(", "))
             }
-            Shown::Quadrature(_) | Shown::System(_) => return self.by_numbers().unwrap_or_default(),
+            Shown::Quadrature(_) | Shown::System(_) => self.by_numbers().unwrap_or_default(),
         };
-        let definitions = self.definitions_behind(shown.symbols()).into_iter();
+        let definitions = self.definitions_of_formula().into_iter();
         let definitions =
             definitions.map(|definition| format!(", {} = {}", definition.symbol, definition.meaning_in_words()));
         std::iter::once(law).chain(definitions).collect()
+    }
+
+    /// The definitions of the law in one line: none where words stand for it.
+    pub fn definitions_of_formula(&self) -> Vec<&Definition> {
+        let shown = self.law.in_one_line();
+        match shown {
+            Shown::Closed(_) if self.numerical => vec![],
+            Shown::Quadrature(_) | Shown::System(_) if self.method.counts() == Counts::Harmonics => vec![],
+            _ => self.definitions_behind(shown.symbols()),
+        }
     }
 
     /// The definitions that a formula in these symbols needs, those that they are made of included.

@@ -102,6 +102,11 @@ impl Force {
         self.of.equilibrium.1
     }
 
+    /// The name of the position.
+    pub fn coordinate(&self) -> Symbol {
+        self.of.coordinate
+    }
+
     /// The force at the distance `y` from the equilibrium.
     pub fn at(&self, y: f64) -> f64 {
         match self.near.as_ref().filter(|near| y.abs() <= near.radius) {

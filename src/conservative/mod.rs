@@ -26,6 +26,7 @@ pub use parity::is_odd;
 pub use potential::potential;
 pub use projection::cosine_coefficient;
 
+use crate::exact::Rational;
 use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
 
@@ -69,10 +70,13 @@ pub(crate) fn linear_in(argument: &Expr, coordinate: Symbol) -> Option<(Expr, Ex
 }
 
 /// The force without `abs`, `sgn`, `max` and `min` of shifted arguments: `abs(u) = u (2 H(u) - 1)` and so on. Those of
-/// the coordinate itself stay.
+/// the coordinate itself stay. Steps of what has its zeros in closed form, as `1 - x^2`, are sums of steps at these.
 pub(crate) fn with_steps(force: &Expr, coordinate: Symbol) -> Result<Expr, ExprError> {
     use crate::expr::{Function, Node};
-    let step = |u: Expr| Expr::function(Function::Step, vec![u]);
+    let step = |u: Expr| match steps_at_zeros(&u, coordinate) {
+        Some(steps) => Ok(steps),
+        None => Expr::function(Function::Step, vec![u]),
+    };
     force.fold(|expr, children: &[Expr]| {
         let shifted = |u: &Expr| {
             u.contains(coordinate) && linear_in(u, coordinate).is_none_or(|(_, constant)| !constant.is_zero())
@@ -90,9 +94,120 @@ pub(crate) fn with_steps(force: &Expr, coordinate: Symbol) -> Result<Expr, ExprE
             (Node::Function(Function::Minimum, _), [u, v]) if u.contains(coordinate) || v.contains(coordinate) => {
                 Ok(u - &((u - v) * step(u - v)?))
             }
+            (Node::Function(Function::Step, _), [u]) => step(u.clone()),
             _ => expr.with_children(children),
         }
     })
+}
+
+/// `H(u)` as a sum of steps at the zeros of `u`, a constant and a power of the coordinate or of its size, or a quadratic in numbers: `None`
+/// for anything else, and where it is one already. Letters under a root are taken to be positive.
+fn steps_at_zeros(u: &Expr, coordinate: Symbol) -> Option<Expr> {
+    use crate::expr::Function;
+    use num_integer::Integer as _;
+    let step = |u: &Expr| Expr::function(Function::Step, vec![u.clone()]).ok();
+    let x = Expr::from(coordinate);
+    // One between two places, zero outside.
+    let between = |low: &Expr, high: &Expr| Some(step(&(&x - low))? - step(&(&x - high))?);
+    let expanded = u.expand().ok()?;
+    let mut constants = Vec::new();
+    let mut powers: Vec<(SignedPower, Expr)> = Vec::new();
+    for term in expanded.terms() {
+        let (outside, mut inside) = split(term, coordinate);
+        if inside.is_empty() {
+            constants.push(outside);
+            continue;
+        }
+        let mut coefficient = outside;
+        let power = take_powers(&mut inside, &mut coefficient, coordinate)?;
+        if !inside.is_empty() || !num_traits::Signed::is_positive(&power.exponent) {
+            return None;
+        }
+        powers.push((power, coefficient));
+    }
+    let constant = Expr::sum(constants);
+    // Of the two signs one is that of a number, if either is: where the zeros are real the other is opposite.
+    let inside_and_outside = |inside: Expr, within: &Expr, beyond: &Expr| {
+        let [within, beyond] = match (within.as_number(), beyond.as_number()) {
+            (None, Some(_)) => [step(&-beyond)?, step(beyond)?],
+            _ => [step(within)?, step(&-within)?],
+        };
+        (&beyond + &((within - &beyond) * inside)).expand().ok()
+    };
+    if let [(power, coefficient)] = powers.as_slice() {
+        if constant.is_zero() || (power.odd && num_traits::One::is_one(&power.exponent)) {
+            return None;
+        }
+        let root = Expr::number(power.exponent.recip());
+        let ratio = (-&Expr::divide(&constant, coefficient).ok()?).expand().ok()?;
+        if power.odd {
+            // Monotonic: of a negative number the root is that of its size.
+            let (negative, size) = match ratio.has_leading_minus() {
+                true => (true, -ratio),
+                false => (false, ratio),
+            };
+            let zero = Expr::power(&size, &root).ok()?;
+            let zero = if negative { -zero } else { zero };
+            let above = step(&(&x - &zero))?;
+            return (step(coefficient)? * &above + step(&-coefficient)? * (Expr::one() - above))
+                .expand()
+                .ok();
+        }
+        if ratio.has_leading_minus() {
+            return step(&constant);
+        }
+        let zero = root_of_size(&ratio, &power.exponent)?;
+        return inside_and_outside(between(&-&zero, &zero)?, &constant, coefficient);
+    }
+    // c + b x + a x^2.
+    let of = |exponent: i64| {
+        let wanted = Rational::from_integer(exponent.into());
+        let found = powers
+            .iter()
+            .find(|(power, _)| power.exponent == wanted && power.odd == exponent.is_odd());
+        found.and_then(|(_, coefficient)| coefficient.as_number().cloned())
+    };
+    let ([_, _], Some(linear), Some(square)) = (powers.as_slice(), of(1), of(2)) else {
+        return None;
+    };
+    let constant = constant.as_number().cloned()?;
+    let four = Rational::from_integer(4.into());
+    let discriminant = &linear * &linear - &four * &square * constant;
+    let square_number = Expr::number(square.clone());
+    if !num_traits::Signed::is_positive(&discriminant) {
+        return step(&square_number);
+    }
+    let half = Expr::divide(
+        &Expr::number(discriminant).sqrt().ok()?,
+        &Expr::number(four * &square / Rational::from_integer(2.into())),
+    )
+    .ok()?;
+    let middle = Expr::number(-linear / (Rational::from_integer(2.into()) * &square));
+    let (low, high) = match num_traits::Signed::is_positive(&square) {
+        true => (&middle - &half, &middle + &half),
+        false => (&middle + &half, &middle - &half),
+    };
+    inside_and_outside(between(&low, &high)?, &-&square_number, &square_number)
+}
+
+/// The root of what is positive where it is real, by its degree: of `c^2/4` it is `abs(c)/2`.
+fn root_of_size(value: &Expr, degree: &Rational) -> Option<Expr> {
+    use crate::expr::Function;
+    use num_integer::Integer as _;
+    let root = Expr::number(degree.recip());
+    let (number, factors) = value.factors();
+    let even = |factor: &Expr| {
+        let (base, exponent) = factor.base_and_exponent();
+        let exponent = exponent
+            .as_number()
+            .filter(|exponent| exponent.is_integer() && exponent.numer().is_even())?;
+        let size = Expr::function(Function::Absolute, vec![base]).ok()?;
+        Expr::power(&size, &Expr::number(exponent / degree)).ok()
+    };
+    match factors.iter().map(even).collect::<Option<Vec<Expr>>>() {
+        Some(sizes) => Some(Expr::power(&Expr::number(number), &root).ok()? * Expr::product(sizes)),
+        None => Expr::power(value, &root).ok(),
+    }
 }
 
 /// A product of powers of the coordinate, its sign and its size: `sgn(x)^odd |x|^exponent`.

@@ -6,6 +6,7 @@ use super::well::Well;
 use crate::decimal::rounded_to;
 use crate::exact::rational::to_f64;
 use crate::numeric::ode::energy::{self, PeriodError};
+use crate::solution::AmplitudeConvention;
 
 impl Force {
     /// The distance from the equilibrium of the other turning point of a motion released at the distance `start`.
@@ -81,14 +82,20 @@ impl Force {
                 _ => error,
             };
         }
-        let end = well.and_then(|well| well.on_side(start));
-        let Some(end) = end.filter(|end| end.rim.separatrix) else {
+        let Some((well, end)) = well.and_then(|well| Some((well, well.on_side(start)?))) else {
             return error;
         };
-        let (place, start) = (end.rim.place, self.equilibrium() + start);
-        match ((start - self.equilibrium()) / end.amplitude - 1.0).abs() {
-            short if short <= ON => PeriodError::Separatrix { start, place },
-            short if short <= NEAR && lost => PeriodError::NearSeparatrix { start, place },
+        let beyond = start / end.amplitude - 1.0;
+        let (place, position) = (end.rim.place, self.equilibrium() + start);
+        match beyond.abs() {
+            short if end.rim.separatrix && short <= ON => PeriodError::Separatrix { start: position, place },
+            short if end.rim.separatrix && short <= NEAR && lost => {
+                PeriodError::NearSeparatrix { start: position, place }
+            }
+            _ if gone && beyond >= 0.0 => PeriodError::OutsideWell {
+                error: Box::new(error),
+                range: well.in_words(AmplitudeConvention::Initial.symbol(), self.coordinate()),
+            },
             _ => error,
         }
     }

@@ -4,8 +4,10 @@
 //! the energy `V(x_e + A)` and stays between the walls of the well where that is below both of its rims:
 //!
 //! ```text
-//! V(x_e + A) < V(rim),   rim = the unstable equilibrium on either side, or where the force ends
+//! V(x_e + A) < V(rim),   rim = the unstable equilibrium on either side, where the force ends, or infinity where V levels off
 //! ```
+//!
+//! Where the inertia depends on the position too, the same holds of `U' = M f` with the energy `M x'^2/2 + U`.
 //!
 //! All lengths are measured by the amplitude asked for, so the units of the equation do not matter.
 
@@ -19,10 +21,18 @@ use crate::symbol::Symbol;
 /// Where a well ends on one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rim {
-    /// The unstable equilibrium, or the place where the force ends.
+    /// The unstable equilibrium, or the place where the force ends; infinite where the force dies away so fast that its potential
+    /// levels off.
     pub place: f64,
     /// Whether it is an unstable equilibrium; otherwise the force has no value beyond it.
     pub separatrix: bool,
+}
+
+/// A rim, and the potential there above the bottom of the well; `None` where that is infinite or unknown.
+#[derive(Clone, Copy)]
+struct Wall {
+    rim: Rim,
+    height: Option<f64>,
 }
 
 /// The largest amplitude of a periodic motion on one side, with its sign, and the rim over which it would leave.
@@ -64,21 +74,58 @@ const GROWTH: f64 = 1.02;
 impl Well {
     /// The well of a force about its equilibrium, where it has an end; `amplitude` gives the scale of the search.
     pub fn new(force: &Force, amplitude: f64) -> Option<Self> {
-        let (equilibrium, unit) = (force.equilibrium(), amplitude.abs());
+        let unit = amplitude.abs();
         if pushes_away(force, unit) {
             return Self::over_hilltops(force, unit);
         }
-        let rim = |side: f64| rim(force, side, unit);
-        let (left, right) = (rim(-1.0), rim(1.0));
-        let end = |side: f64, own: Option<Rim>, other: Option<Rim>| {
-            let own_end = own.map(|rim| End {
-                amplitude: rim.place - equilibrium,
+        Self::between(force, unit, |side| rim(force, side, unit))
+    }
+
+    /// The well where the inertia depends on the position: `weighted` is the slope `M f` of the potential, `force` the force as it
+    /// stands in the equation. The product may go on where the motion does not, beside a zero of `M` at which `f` is infinite.
+    pub fn with_inertia(weighted: &Force, force: &Force, amplitude: f64) -> Option<Self> {
+        let unit = amplitude.abs();
+        if pushes_away(weighted, unit) {
+            return None;
+        }
+        Self::between(weighted, unit, |side| {
+            let ends = rim(force, side, unit).filter(|rim| !rim.separatrix && rim.place.is_finite());
+            let distance = |rim: &Rim| (rim.place - weighted.equilibrium()).abs();
+            let nearest = rim(weighted, side, unit).into_iter().chain(ends);
+            nearest.min_by(|one, other| distance(one).total_cmp(&distance(other)))
+        })
+    }
+
+    /// The well between the rims on both sides of an equilibrium.
+    fn between(force: &Force, unit: f64, rim: impl Fn(f64) -> Option<Rim>) -> Option<Self> {
+        /// Relative differences of two heights below this are rounding.
+        const EVEN: f64 = 1e-8;
+        let equilibrium = force.equilibrium();
+        let wall = |side: f64| {
+            rim(side).map(|rim| Wall {
                 rim,
+                height: match rim.place.is_finite() {
+                    true => rise(force, rim.place - equilibrium),
+                    false => rise_to_infinity(force, side, unit),
+                },
+            })
+        };
+        let (left, right) = (wall(-1.0), wall(1.0));
+        let end = |side: f64, own: Option<Wall>, other: Option<Wall>| {
+            let own_end = own.filter(|wall| wall.rim.place.is_finite()).map(|wall| End {
+                amplitude: wall.rim.place - equilibrium,
+                rim: wall.rim,
             });
             // Released on this side, the motion may also leave over the other rim.
-            let Some(height) = other.and_then(|rim| rise(force, rim.place - equilibrium)) else {
+            let Some((rim, height)) = other.and_then(|wall| Some((wall.rim, wall.height?))) else {
                 return own_end;
             };
+            let lower = own
+                .and_then(|wall| wall.height)
+                .is_some_and(|own| own <= height * (1.0 + EVEN));
+            if own_end.is_none() && lower {
+                return None;
+            }
             let excess = |size: f64| rise(force, side * size).map_or(f64::NAN, |energy| energy / height - 1.0);
             let (mut low, mut high) = (0.0, own_end.map_or(unit, |end| end.amplitude.abs() * (1.0 - 1e-12)));
             while own_end.is_none() && excess(high) <= 1e-9 && high < FARTHEST * unit {
@@ -89,7 +136,6 @@ impl Well {
                 high *= 2.0;
             }
             if excess(high) > 1e-9
-                && let Some(rim) = other
                 && let Ok(size) = find_root(|size| if size == 0.0 { -1.0 } else { excess(size) }, low, high)
             {
                 return Some(End {
@@ -146,6 +192,10 @@ impl Well {
             let place = significant(rim.place, 6);
             match rim.separatrix {
                 true => format!("the separatrix passes the unstable equilibrium {coordinate} = {place}"),
+                false if rim.place.is_infinite() => {
+                    let sign = if rim.place < 0.0 { "-" } else { "" };
+                    format!("beyond it the motion escapes to {coordinate} = {sign}infinity")
+                }
                 false => format!("the force ends at {coordinate} = {place}"),
             }
         };
@@ -214,6 +264,51 @@ pub(super) fn rise(force: &Force, to: f64) -> Option<f64> {
     Some(if to < 0.0 { -sum } else { sum })
 }
 
+/// The potential above the bottom of the well infinitely far away on one side, where the force dies away so fast that it is finite:
+/// the work over distances that double is then soon a geometric series, whose remainder is its last term times `q/(1 - q)`.
+fn rise_to_infinity(force: &Force, side: f64, unit: f64) -> Option<f64> {
+    const DOUBLINGS: i32 = 1000;
+    /// Of the height: a remainder below this is rounding, one below the other is good enough where the force has no digits beyond.
+    const NEGLIGIBLE: f64 = 1e-14;
+    const SMALL: f64 = 1e-9;
+    /// A quotient closer to one than this belongs to a potential that grows without end, as a logarithm, or may do so.
+    const CONVERGES: f64 = 0.97;
+    /// By how much the quotient may still change.
+    const SETTLED: f64 = 1e-4;
+    let mut sum = rise(force, side * unit)?;
+    let (mut last, mut quotient) = (f64::INFINITY, f64::INFINITY);
+    let mut distance = unit;
+    for _ in 0..DOUBLINGS {
+        let next = 2.0 * distance;
+        let Some((work, _)) = force.work(side * distance, side * next) else {
+            break;
+        };
+        sum += work;
+        if work <= NEGLIGIBLE * NEGLIGIBLE * sum {
+            return (work >= 0.0).then_some(sum);
+        }
+        let settled = (work / last - quotient).abs() < SETTLED;
+        quotient = work / last;
+        (last, distance) = (work, next);
+        if !settled {
+            continue;
+        }
+        if quotient > CONVERGES {
+            // Near the bottom the work still grows.
+            match distance > FARTHEST * unit {
+                true => return None,
+                false => continue,
+            }
+        }
+        let rest = last * quotient / (1.0 - quotient);
+        if rest < NEGLIGIBLE * sum {
+            return Some(sum + rest);
+        }
+    }
+    let rest = last * quotient / (1.0 - quotient);
+    (quotient < CONVERGES && rest < SMALL * sum).then_some(sum + rest)
+}
+
 /// The work towards a place where the force is infinite but its potential is not, as that of `1/sqrt(1 - x)` at 1, counted from
 /// the left: with the distance from there as the sixth power of a variable the integrand is bounded. `None` at a pole.
 fn towards_the_end(force: &Force, from: f64, to: f64) -> Option<f64> {
@@ -236,7 +331,7 @@ fn towards_the_end(force: &Force, from: f64, to: f64) -> Option<f64> {
     Some(work * (from - to).abs())
 }
 
-/// The first place on one side where the force turns its sign or ends.
+/// The first place on one side where the force turns its sign or ends; infinity where its potential levels off.
 fn rim(force: &Force, side: f64, unit: f64) -> Option<Rim> {
     let equilibrium = force.equilibrium();
     let pull = |distance: f64| side * force.at(side * distance);
@@ -277,9 +372,9 @@ fn rim(force: &Force, side: f64, unit: f64) -> Option<Rim> {
                 continue;
             }
         }
-        // A force that has grown beyond all numbers goes on, only not in numbers.
+        // A force that has grown beyond all numbers goes on, only not in numbers, as does one that dies away as a quotient of such.
         if !there.is_finite() && (strongest > 1e250 || force.overflow(side * next).is_some()) {
-            return None;
+            return levels_off(force, side, unit, pull(distance) / strongest);
         }
         if !there.is_finite() {
             return Some(Rim {
@@ -288,7 +383,9 @@ fn rim(force: &Force, side: f64, unit: f64) -> Option<Rim> {
             });
         }
         if there <= 0.0 {
-            let (size, separatrix) = sign_change(&pull, distance, next, strongest)?;
+            let Some((size, separatrix)) = sign_change(&pull, distance, next, strongest) else {
+                return levels_off(force, side, unit, there / strongest);
+            };
             return Some(Rim {
                 place: equilibrium + side * size,
                 separatrix,
@@ -300,7 +397,21 @@ fn rim(force: &Force, side: f64, unit: f64) -> Option<Rim> {
             step = distance * (GROWTH - 1.0);
         }
     }
-    None
+    levels_off(force, side, unit, pull(distance) / strongest)
+}
+
+/// Infinity as a rim, of a force that pulls back all the way with this part of its largest value in the end, where its potential is
+/// finite there.
+fn levels_off(force: &Force, side: f64, unit: f64, weakened: f64) -> Option<Rim> {
+    /// A force that has not weakened by this over ten decades, a million units far, does not die away as fast as its inverse distance.
+    const DIES_AWAY: f64 = 1e-3;
+    if weakened.is_nan() || weakened.abs() > DIES_AWAY {
+        return None;
+    }
+    rise_to_infinity(force, side, unit).map(|_| Rim {
+        place: side * f64::INFINITY,
+        separatrix: false,
+    })
 }
 
 /// Where a force ends between a distance at which it has a value and one at which it has none, from outside.

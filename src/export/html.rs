@@ -207,7 +207,7 @@ impl Body<'_> {
             Block::Truth { at, frequency, .. } => paragraph(&text::comparison::true_frequency(at, frequency)),
             Block::Refused(refused) => heading("Not applicable") + &definitions("long", &refusals(refused)),
             Block::TrueMotion(lines) => heading("True motion") + &list(lines),
-            Block::Motion(solution) => match solution.displacement.is_zero() {
+            Block::Motion(solution) => match solution.displacement.is_zero() && solution.closed_motion.is_none() {
                 true => paragraph(text::without_motion(solution)),
                 false => String::new(),
             },

@@ -431,10 +431,13 @@ pub(super) fn waves(series: &FourierSeries<Polynomials>, solution: &Solution) ->
 
 /// The motion, one harmonic a line; nothing where only quadrature gives it.
 fn motion(solution: &Solution) -> Vec<String> {
+    let coordinate = symbol(solution.coordinate());
+    if let Some(motion) = &solution.closed_motion {
+        return vec![format!("{coordinate}(t) &= {}", expression(motion))];
+    }
     if solution.displacement.is_zero() {
         return vec![];
     }
-    let coordinate = symbol(solution.coordinate());
     let waves = waves(&solution.displacement, solution);
     let mut lines = terms::lines(&waves, &format!("{coordinate}(t) &= "), "&\\quad ");
     lines.push(format!("\\theta &= {}", angle(solution)));

@@ -300,6 +300,9 @@ pub(super) fn without_motion(solution: &Solution) -> &'static str {
 
 /// The motion, one harmonic a line.
 fn motion(solution: &Solution) -> String {
+    if let Some(motion) = &solution.closed_motion {
+        return format!("  {}(t) = {motion}\n", solution.coordinate());
+    }
     if solution.displacement.is_zero() {
         return format!("  {}\n", without_motion(solution));
     }

@@ -12,6 +12,7 @@ use num_traits::{One, Signed, ToPrimitive, Zero};
 
 use spec_math::cephes64;
 
+use super::jacobi::jacobi;
 use super::{Expr, ExprError, Node, normal, number, order, print};
 use crate::exact::rational::{Rational, ratio};
 
@@ -63,6 +64,12 @@ pub enum Function {
     Gamma,
     /// `K`, the complete elliptic integral of the first kind as a function of the parameter m = k^2 < 1
     EllipticK,
+    /// `sn(u, m)`, the elliptic function of Jacobi with the parameter m = k^2 up to one
+    JacobiSn,
+    /// `cn(u, m)`, likewise
+    JacobiCn,
+    /// `dn(u, m)`, likewise
+    JacobiDn,
 }
 
 impl Function {
@@ -139,7 +146,8 @@ impl Function {
                 return Ok(exact);
             }
             if matches!(entry.parity, Parity::Even | Parity::Odd) && first.has_leading_minus() {
-                let positive = self.apply(vec![-first])?;
+                let turned = std::iter::once(-first).chain(arguments.iter().skip(1).cloned());
+                let positive = self.apply(turned.collect())?;
                 return Ok(if entry.parity == Parity::Odd {
                     -positive
                 } else {
@@ -192,9 +200,9 @@ pub(super) enum Value {
 
 #[derive(PartialEq)]
 enum Parity {
-    /// f(-u) = f(u)
+    /// f(-u) = f(u), whatever else there is
     Even,
-    /// f(-u) = -f(u)
+    /// f(-u) = -f(u), likewise
     Odd,
     /// f(u, v) = f(v, u)
     Symmetric,
@@ -205,11 +213,11 @@ enum Parity {
 struct NoValue;
 
 use Function::{Absolute, Acos, Asin, Atan, Cos, Cosh, Exp, Log, Maximum, Minimum, Sign, Sin, Sinh, Step, Tan, Tanh};
-use Function::{BesselI0, BesselI1, BesselJ0, BesselJ1, EllipticK, Gamma};
+use Function::{BesselI0, BesselI1, BesselJ0, BesselJ1, EllipticK, Gamma, JacobiCn, JacobiDn, JacobiSn};
 use Value::{One as Unary, Two as Binary};
 
 /// The entries stand in the order of the variants of [`Function`].
-static TABLE: [Entry; 22] = [
+static TABLE: [Entry; 25] = [
     Entry {
         function: Sin,
         name: "sin",
@@ -424,7 +432,62 @@ static TABLE: [Entry; 22] = [
             )))
         },
     },
+    // NIST Digital Library of Mathematical Functions 22.13: sn' = cn dn, cn' = -sn dn, dn' = -m sn cn.
+    Entry {
+        function: JacobiSn,
+        name: "sn",
+        parity: Parity::Odd,
+        value: Binary(|u, m| jacobi(u, m)[0]),
+        exact: |u, m| limit_of_jacobi(u, m, Expr::zero, Sin),
+        derivative: |u, m, index| match index {
+            0 => Ok(elliptic(JacobiCn, u, m)? * elliptic(JacobiDn, u, m)?),
+            _ => Err(no_slope(JacobiSn, u, m)),
+        },
+    },
+    Entry {
+        function: JacobiCn,
+        name: "cn",
+        parity: Parity::Even,
+        value: Binary(|u, m| jacobi(u, m)[1]),
+        exact: |u, m| limit_of_jacobi(u, m, Expr::one, Cos),
+        derivative: |u, m, index| match index {
+            0 => Ok(-(elliptic(JacobiSn, u, m)? * elliptic(JacobiDn, u, m)?)),
+            _ => Err(no_slope(JacobiCn, u, m)),
+        },
+    },
+    Entry {
+        function: JacobiDn,
+        name: "dn",
+        parity: Parity::Even,
+        value: Binary(|u, m| jacobi(u, m)[2]),
+        exact: |u, m| match m.as_number() {
+            Some(number) if *number > Rational::one() => Err(NoValue),
+            _ => Ok(at(u, 0, Expr::one).or_else(|| at(m, 0, Expr::one))),
+        },
+        derivative: |u, m, index| match index {
+            0 => Ok(-(m * &(elliptic(JacobiSn, u, m)? * elliptic(JacobiCn, u, m)?))),
+            _ => Err(no_slope(JacobiDn, u, m)),
+        },
+    },
 ];
+
+fn elliptic(function: Function, u: &Expr, m: &Expr) -> Result<Expr, ExprError> {
+    function.apply(vec![u.clone(), m.clone()])
+}
+
+/// The slope of an elliptic function by its parameter is none of the table.
+fn no_slope(function: Function, u: &Expr, m: &Expr) -> ExprError {
+    ExprError::Undefined(print::call_in_message(function, &[u.clone(), m.clone()]))
+}
+
+/// An elliptic function at zero, or of the parameter zero, where it is circular.
+fn limit_of_jacobi(u: &Expr, m: &Expr, at_zero: fn() -> Expr, circular: Function) -> Result<Option<Expr>, NoValue> {
+    match m.as_number() {
+        Some(number) if *number > Rational::one() => Err(NoValue),
+        Some(number) if number.is_zero() => call(circular, u).map(Some).map_err(|_| NoValue),
+        _ => Ok(at(u, 0, at_zero)),
+    }
+}
 
 /// Gamma, NaN at its poles.
 fn gamma(u: f64) -> f64 {

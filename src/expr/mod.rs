@@ -31,6 +31,7 @@ mod calculus;
 mod evaluate;
 mod factor;
 mod function;
+mod jacobi;
 mod normal;
 mod number;
 mod order;

@@ -245,6 +245,7 @@ impl Averaged {
             }),
             response: None,
             numerical: false,
+            closed_motion: None,
             convergence: None,
             validity: std::iter::once(cut).chain(self.notes).collect(),
             steps: vec![],

@@ -71,6 +71,7 @@ impl DrivenMotion<'_> {
             }),
             response: Some(self.response),
             numerical: false,
+            closed_motion: None,
             convergence: None,
             validity: self.validity,
             steps: vec![],

@@ -17,6 +17,15 @@
 //! a x + b x^2:          omega = pi sqrt((P + D)/2)/(2 K((P - D)/(P + D))),  P = a + 2 b A,  D^2 = a^2 - 4 a b A/3 - 4 b^2 A^2/3
 //! ```
 //!
+//! and the motions, by the elliptic functions of Jacobi of these parameters `m` (NIST Digital Library of Mathematical Functions 22.19):
+//!
+//! ```text
+//! k sin(c x):           x = (2/c) asin(sin(c A/2) sn(sqrt(k c) t + K(m), m))
+//! a x + b x^3 + l x^5:  x = A cn/sqrt(cn^2 + sqrt(p/r) sn^2 dn^2),   all of (p r)^(1/4) t
+//! a x + b x^3:          x = A cn(sqrt(a + b A^2) t, m)
+//! a x + b x^2:          x = A - 4 A (a + b A)/(P + D) sn^2(sqrt((P + D)/8) t, m)
+//! ```
+//!
 //! ```
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
@@ -52,20 +61,30 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let force = conservative_force(oscillator, options, METHOD)?;
     let mut solution = unsolved(oscillator, options, METHOD, 0);
     solution.displacement = FourierSeries::zero(POLYNOMIALS);
-    let law = match polynomial_coefficients(oscillator, &force)? {
+    let known = match polynomial_coefficients(oscillator, &force)? {
         Some(coefficients) => of_polynomial(&coefficients)?,
         None => of_function(oscillator, &force)?,
     };
+    let (law, motion) = known.map_or((None, None), |known| (Some(known.law), known.motion));
     solution.law = match law {
-        Some(Known::Squared(squared)) => Law::squared(squared),
-        Some(Known::Form(value)) => Law::Closed(ClosedForm { squared: false, value }),
+        Some(Frequency::Squared(squared)) => Law::squared(squared),
+        Some(Frequency::Form(value)) => Law::Closed(ClosedForm { squared: false, value }),
         None => Law::Quadrature(period_by_energy(oscillator, &force)?),
     };
+    let is_elliptic = |motion: &Expr| {
+        use Function::{JacobiCn, JacobiDn, JacobiSn};
+        [JacobiSn, JacobiCn, JacobiDn]
+            .into_iter()
+            .any(|function| motion.contains_function(function))
+    };
+    let by_jacobi = motion.as_ref().is_some_and(is_elliptic);
+    solution.closed_motion = motion;
     solution.derivation = period_by_energy(oscillator, &force)?;
     solution.validity.push(Note::Exact(match solution.law.quadrature() {
         None => ExactBy::ClosedForm,
         Some(_) => ExactBy::Quadrature,
     }));
+    solution.validity.extend(by_jacobi.then_some(Note::EllipticFunctions));
     Ok(solution)
 }
 
@@ -166,9 +185,39 @@ impl Energy<'_> {
     }
 }
 
-enum Known {
+/// What is known of a force.
+struct Known {
+    law: Frequency,
+    /// `x(t)` from rest at `A`, about the equilibrium.
+    motion: Option<Expr>,
+}
+
+enum Frequency {
     Squared(Polynomial),
     Form(Expr),
+}
+
+impl Known {
+    fn form(value: Expr, motion: Option<Expr>) -> Self {
+        Self {
+            law: Frequency::Form(value),
+            motion,
+        }
+    }
+}
+
+fn time() -> Expr {
+    Expr::symbol("t")
+}
+
+/// `sn`, `cn` and `dn` of an argument and a parameter.
+fn jacobi(argument: &Expr, parameter: &Expr) -> Result<[Expr; 3], ExprError> {
+    let of = |function| Expr::function(function, vec![argument.clone(), parameter.clone()]);
+    Ok([
+        of(Function::JacobiSn)?,
+        of(Function::JacobiCn)?,
+        of(Function::JacobiDn)?,
+    ])
 }
 
 fn half() -> Expr {
@@ -192,11 +241,26 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
     let amplitude = Expr::symbol("A");
     let squared = amplitude.integer_power(2)?;
     match powers.as_slice() {
-        [1] => Ok(coefficients.get(1).cloned().map(Known::Squared)),
-        [n] if n % 2 == 1 => Ok(Some(Known::Form(of_power(
-            &of(*n),
-            &Expr::number(Rational::from_integer((*n).into())),
-        )?))),
+        [1] => {
+            let rate = of(1).sqrt()?;
+            let law = coefficients.get(1).cloned();
+            let motion = &amplitude * &(rate * time()).cos()?;
+            Ok(law.map(|law| Known {
+                law: Frequency::Squared(law),
+                motion: Some(motion),
+            }))
+        }
+        [n] if n % 2 == 1 => {
+            let law = of_power(&of(*n), &Expr::number(Rational::from_integer((*n).into())))?;
+            let motion = match n {
+                3 => {
+                    let [_, cn, _] = jacobi(&(of(3).sqrt()? * &amplitude * time()), &half())?;
+                    Some(&amplitude * &cn)
+                }
+                _ => None,
+            };
+            Ok(Some(Known::form(law, motion)))
+        }
         [1, 2] => {
             let (a, b) = (of(1), of(2));
             let product = &b * &amplitude;
@@ -204,13 +268,18 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
             let third = |n: i64| Expr::number(ratio(n, 3));
             let inside = a.integer_power(2)? - third(4) * &a * &product - third(4) * product.integer_power(2)?;
             let d = inside.expand()?.sqrt()?;
-            let scale = ((&p + &d) * half()).sqrt()?;
-            let parameter = Expr::divide(&(&p - &d), &(&p + &d))?;
+            let sum = &p + &d;
+            let scale = (&sum * &half()).sqrt()?;
+            let parameter = Expr::divide(&(&p - &d), &sum)?;
             let law = Expr::divide(
                 &(Expr::pi() * scale),
-                &(Expr::from(2) * Expr::function(Function::EllipticK, vec![parameter])?),
+                &(Expr::from(2) * Expr::function(Function::EllipticK, vec![parameter.clone()])?),
             )?;
-            Ok(Some(Known::Form(law)))
+            let rate = (&sum * &Expr::number(ratio(1, 8))).sqrt()?;
+            let [sn, ..] = jacobi(&(rate * time()), &parameter)?;
+            let width = Expr::divide(&(Expr::from(4) * &amplitude * (&a + &product)), &sum)?;
+            let motion = &amplitude - &(width * sn.integer_power(2)?);
+            Ok(Some(Known::form(law, Some(motion))))
         }
         [1, 3] => {
             let (a, stiff) = (of(1), of(3) * &squared);
@@ -218,9 +287,10 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
             let parameter = Expr::divide(&stiff, &(Expr::from(2) * &sum))?;
             let law = Expr::divide(
                 &(Expr::pi() * sum.sqrt()?),
-                &(Expr::from(2) * Expr::function(Function::EllipticK, vec![parameter])?),
+                &(Expr::from(2) * Expr::function(Function::EllipticK, vec![parameter.clone()])?),
             )?;
-            Ok(Some(Known::Form(law)))
+            let [_, cn, _] = jacobi(&(sum.sqrt()? * time()), &parameter)?;
+            Ok(Some(Known::form(law, Some(&amplitude * &cn))))
         }
         [1, 5] | [3, 5] | [1, 3, 5] => {
             let (a, b, l) = (of(1), of(3) * &squared, of(5) * squared.integer_power(2)?);
@@ -231,10 +301,14 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
             let quarter = Expr::power(&product, &Expr::number(ratio(1, 4)))?;
             let parameter = half() - Expr::divide(&q.expand()?, &(Expr::from(4) * product.sqrt()?))?;
             let law = Expr::divide(
-                &(Expr::pi() * quarter),
-                &(Expr::from(2) * Expr::function(Function::EllipticK, vec![parameter])?),
+                &(Expr::pi() * &quarter),
+                &(Expr::from(2) * Expr::function(Function::EllipticK, vec![parameter.clone()])?),
             )?;
-            Ok(Some(Known::Form(law)))
+            let [sn, cn, dn] = jacobi(&(quarter * time()), &parameter)?;
+            let share = Expr::divide(&p, &r)?.sqrt()? * (sn * dn).integer_power(2)?;
+            let below = (cn.integer_power(2)? + share).sqrt()?;
+            let motion = Expr::divide(&(&amplitude * &cn), &below)?;
+            Ok(Some(Known::form(law, Some(motion))))
         }
         _ => Ok(None),
     }
@@ -262,26 +336,34 @@ fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Known>, R
         && phase.is_zero()
     {
         let scale = (&outside * &slope).expand()?.sqrt()?;
-        let angle = Expr::divide(&(slope * Expr::symbol("A")), &Expr::from(2))?;
-        let squared = Expr::function(*function, vec![angle])?.integer_power(2)?;
-        let parameter = if *function == Function::Sin { squared } else { -squared };
-        return Ok(Some(Known::Form(by_elliptic(&scale, parameter)?)));
+        let angle = Expr::divide(&(&slope * &Expr::symbol("A")), &Expr::from(2))?;
+        let sine = Expr::function(*function, vec![angle])?;
+        let squared = sine.integer_power(2)?;
+        if *function == Function::Sinh {
+            return Ok(Some(Known::form(by_elliptic(&scale, -squared)?, None)));
+        }
+        let quarter = elliptic(squared.clone())?;
+        let [sn, ..] = jacobi(&(&scale * &time() + quarter), &squared)?;
+        let turned = Expr::function(Function::Asin, vec![sine * sn])?;
+        let motion = Expr::divide(&(Expr::from(2) * turned), &slope)?;
+        return Ok(Some(Known::form(by_elliptic(&scale, squared)?, Some(motion))));
     }
     // A power that is no number.
     let mut power = Power::one();
     if inside.iter().all(|factor| power.takes(factor, coordinate)) && power.exponent.as_number().is_none() {
         let form = power.odd.then(|| of_power(&outside, &power.exponent)).transpose()?;
-        return Ok(form.map(Known::Form));
+        return Ok(form.map(|form| Known::form(form, None)));
     }
     match take_powers(&mut inside, &mut outside, coordinate) {
         Some(power) if inside.is_empty() && power.odd && power.exponent == -Rational::one() => {
             let scale = Expr::divide(&(Expr::pi() * &outside), &Expr::from(2))?
                 .expand()?
                 .sqrt()?;
-            Ok(Some(Known::Form(Expr::divide(&scale, &Expr::symbol("A"))?)))
+            Ok(Some(Known::form(Expr::divide(&scale, &Expr::symbol("A"))?, None)))
         }
         Some(power) if inside.is_empty() && power.odd && power.exponent > -Rational::one() => {
-            Ok(Some(Known::Form(of_power(&outside, &Expr::number(power.exponent))?)))
+            let law = of_power(&outside, &Expr::number(power.exponent))?;
+            Ok(Some(Known::form(law, None)))
         }
         _ => Ok(None),
     }

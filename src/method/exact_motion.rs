@@ -22,6 +22,18 @@ pub(super) fn motion_about(force: &RestForce, start: f64) -> Result<(f64, Vec<f6
     Ok((period, cosine))
 }
 
+/// The coefficients of `cos(k theta)` of a motion that is even in theta.
+pub(super) fn cosines(place: &dyn Fn(f64) -> f64) -> Vec<f64> {
+    const POINTS: usize = 16 * HARMONICS;
+    let angle = |i: usize| std::f64::consts::PI * (i as f64 + 0.5) / POINTS as f64;
+    let places: Vec<f64> = (0..POINTS).map(|i| place(angle(i))).collect();
+    let coefficient = |k: usize| {
+        let waves = places.iter().enumerate().map(|(i, x)| x * (k as f64 * angle(i)).cos());
+        waves.sum::<f64>() * if k == 0 { 1.0 } else { 2.0 } / POINTS as f64
+    };
+    (0..HARMONICS).map(coefficient).collect()
+}
+
 /// The period of a motion where the energy is `M x'^2/2 + U`, released at rest from `start`, and the coefficients of
 /// `cos(k theta)`: `force` is `U'` and `weight` the root of `M`, by which every instant takes longer.
 ///

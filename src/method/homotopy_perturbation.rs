@@ -127,6 +127,7 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
         modulation: None,
         response: None,
         numerical: false,
+        closed_motion: None,
         convergence: None,
         validity,
         steps: series.steps,

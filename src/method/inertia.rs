@@ -152,6 +152,13 @@ impl VariableMass {
     }
 }
 
+/// `M h`, whose integral is the potential energy, and `h`, of an equation whose inertia depends on the position; `None` for any other,
+/// and where `M` has no closed form.
+pub(crate) fn forces(oscillator: &Oscillator) -> Option<[Expr; 2]> {
+    let moving = VariableMass::of(oscillator).ok()??;
+    Some([moving.weighted_force()?, moving.force])
+}
+
 /// `exp(n int g dx)`, logarithms in the exponent written as powers.
 fn integrating_factor(n: i64, growth: &Expr, coordinate: Symbol) -> Option<Expr> {
     let exponent = (Expr::from(n) * potential(growth, coordinate)?).expand().ok()?;

@@ -147,6 +147,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         modulation: None,
         response: None,
         numerical: false,
+        closed_motion: None,
         convergence: None,
         validity,
         steps: series.steps,

@@ -67,7 +67,9 @@ use crate::oscillator::corner::near_rest;
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::series::FourierSeries;
 use crate::series::taylor::TaylorError;
-use crate::solution::{Advice, AmplitudeConvention, Degrees, Method, Note, Setting, Solution, note::Position};
+use crate::solution::{
+    Advice, AmplitudeConvention, Degrees, Method, Note, Setting, Solution, constant_in_words, note::Position,
+};
 use crate::symbol::{Symbol, fresh};
 
 /// The highest order any method accepts.
@@ -298,7 +300,8 @@ pub enum Unsuited {
     },
     /// As [`Unsuited::NotOdd`], about an equilibrium that is not zero.
     #[error(
-        "is for forces that are odd about the equilibrium, but `{term}` is not odd about {coordinate} = {position}"
+        "is for forces that are odd about the equilibrium, but `{term}` is not odd about {coordinate} = {}",
+        constant_in_words(position)
     )]
     NotOddAbout {
         /// The term.
@@ -524,6 +527,7 @@ impl Refusal {
             | Self::AmplitudeNotFree { term }
             | Self::Oscillator(
                 OscillatorError::NotSmall { term, .. }
+                | OscillatorError::OneSided { term, .. }
                 | OscillatorError::NotPolynomial(term)
                 | OscillatorError::Taylor(TaylorError::NotAnalytic { term, .. }),
             ) => term.words(),
@@ -774,6 +778,9 @@ fn move_back(solution: &mut Solution, oscillator: &Oscillator, centred: &Centred
     }
     if let Some(response) = &mut solution.response {
         response.motion = &response.motion + &centred.written;
+    }
+    if let Some(motion) = &mut solution.closed_motion {
+        *motion = &*motion + &centred.written;
     }
     solution.equation = oscillator.equation();
     if centred.numerical {

@@ -93,9 +93,9 @@ pub enum NoMotion {
     /// Values are missing.
     #[error("values are needed for: {}", .0.iter().map(|name| name.name()).collect::<Vec<_>>().join(", "))]
     Missing(Vec<Symbol>),
-    /// The frequency of the formula is not real.
-    #[error("not real: omega^2 <= 0")]
-    NotReal,
+    /// The frequency of the formula is not positive, or is known without a motion.
+    #[error("the formula has no motion at these values: its frequency is not positive, or is all that it gives")]
+    Unknown,
     /// The motion of a driven equation, which does not follow from its amplitude alone.
     #[error(
         "a driven motion has a phase of its own: its steady motions are `steady_states`, and `response.motion` is its formula"
@@ -127,9 +127,9 @@ impl Solution {
         }
         let found = evaluate(&oscillator, self, &values.numbers())?;
         if !(found.frequency_squared > 0.0 && found.frequency_squared.is_finite()) {
-            return Err(NoMotion::NotReal);
+            return Err(NoNumbers::not_positive(self).into());
         }
-        let displacement = found.motion.ok_or(NoMotion::NotReal)?;
+        let displacement = found.motion.ok_or(NoMotion::Unknown)?;
         Ok(Motion {
             coordinate: oscillator.coordinate,
             frequency: found.frequency_squared.sqrt(),

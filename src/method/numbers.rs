@@ -8,14 +8,14 @@ use std::collections::BTreeMap;
 
 use num_traits::Zero as _;
 
-use super::exact_motion::motion_about;
+use super::exact_motion::{cosines, motion_about};
 use super::table::{Choice, Entry, Motion};
 use super::{balance, first_order, harmonic_balance, homotopy_analysis, inertia, one_term};
 use crate::conservative::force::Force;
 use crate::conservative::is_odd;
 use crate::decimal::significant;
 use crate::exact::{Doubles, Polynomial};
-use crate::expr::{EvaluationError, Rounded};
+use crate::expr::{CompiledFunction, EvaluationError, Expr, Rounded};
 use crate::numeric::ode::energy::PeriodError;
 use crate::numeric::ode::root::find_minimum;
 use crate::oscillator::Oscillator;
@@ -91,6 +91,9 @@ pub enum NoNumbers {
     /// omega^2 is not positive.
     #[error("not real: omega^2 <= 0")]
     NotReal,
+    /// omega itself is not positive, of a law for omega.
+    #[error("not positive: omega <= 0")]
+    NotPositive,
     /// The law is larger than any number.
     #[error("{law} is beyond the range of double precision, 1.8e308")]
     LawBeyond {
@@ -150,6 +153,14 @@ pub enum NoNumbers {
 }
 
 impl NoNumbers {
+    /// That the frequency of an answer is not positive, of the law that it is given by.
+    pub(crate) fn not_positive(solution: &Solution) -> Self {
+        match law_name(solution) {
+            "omega" => Self::NotPositive,
+            _ => Self::NotReal,
+        }
+    }
+
     /// Whether there is no frequency because it would not be real.
     pub fn is_not_real(&self) -> bool {
         matches!(
@@ -396,6 +407,19 @@ fn is_exact(solution: &Solution) -> bool {
 /// Whether the law is that of a motion `A cos(theta)`.
 fn of_one_term(solution: &Solution) -> bool {
     by_size(solution) && !is_exact(solution) && solution.law.system().is_none()
+}
+
+/// The law that the frequency of an answer is taken from: `omega^2`, of which it is the root, or `omega`.
+pub(crate) fn law_name(solution: &Solution) -> &'static str {
+    // What is solved by numbers gives omega itself, but for the one-term laws, which are integrals for omega^2.
+    let by_integral = solution.law.quadrature().is_some() && solution.method != Method::Exact;
+    match solution.law.closed_form() {
+        _ if solution.law.frequency_squared().is_some() || solution.law.relation().is_some() || by_integral => {
+            "omega^2"
+        }
+        Some(form) => form.name(),
+        None => "omega",
+    }
 }
 
 /// The amplitude; one where the law is free of it and none is given.
@@ -828,10 +852,30 @@ fn exact_motion(
     let found = motion_about(&force, start);
     let (period, cosine) = found.map_err(|error| force.why_no_period(start, error))?;
     let frequency = std::f64::consts::TAU / period;
+    // A motion that is written down is judged as it is written.
+    let written = solution.closed_motion.as_ref();
+    let written = written.and_then(|motion| along(solution, motion, numbers, frequency));
     Ok((
         frequency * frequency,
-        FourierSeries::from_parts(Doubles, cosine, vec![]),
+        FourierSeries::from_parts(Doubles, written.unwrap_or(cosine), vec![]),
     ))
+}
+
+/// The coefficients of `cos(k theta)` of a motion in closed form; `None` where it has no value.
+fn along(solution: &Solution, motion: &Expr, numbers: &BTreeMap<Symbol, f64>, frequency: f64) -> Option<Vec<f64>> {
+    let mut values = numbers.clone();
+    values.extend(solution.defined_values(&|name| numbers.get(&name).copied()).ok()?);
+    let time = Symbol::new("t");
+    let names: Vec<Symbol> = std::iter::once(time).chain(values.keys().copied()).collect();
+    let function = CompiledFunction::new(motion, &names).ok()?;
+    let arguments: Vec<f64> = std::iter::once(0.0).chain(values.values().copied()).collect();
+    let place = |theta: f64| {
+        let mut arguments = arguments.clone();
+        arguments[0] = theta / frequency;
+        function.call(&arguments)
+    };
+    let cosine = cosines(&place);
+    cosine.iter().all(|value| value.is_finite()).then_some(cosine)
 }
 
 /// The hbar between -2 and 0 at which the squared residual of the original equation is least.

@@ -108,6 +108,7 @@ pub(super) fn unsolved(oscillator: &Oscillator, options: &Options, method: Metho
         modulation: None,
         response: None,
         numerical: false,
+        closed_motion: None,
         convergence: None,
         validity: vec![],
         steps: vec![],

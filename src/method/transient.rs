@@ -13,10 +13,13 @@
 //!
 //! Letters count as positive: they decide where a motion ends and which form of the same solution is written.
 
-use num_traits::{One as _, Signed as _};
+use num_traits::{One as _, Signed as _, Zero as _};
 
+use crate::decimal::rounded;
 use crate::exact::Rational;
-use crate::expr::{Expr, ExprError, Function, Node};
+use crate::exact::rational::ratio;
+use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
+use crate::numeric::ode::root::find_root;
 use crate::solution::modulation::{Release, Transient};
 use crate::solution::{Definition, LeadingCycle};
 use crate::symbol::{Symbol, fresh};
@@ -75,8 +78,8 @@ fn tidy(expression: &Expr) -> Option<Expr> {
     tidied.ok()
 }
 
-/// The amplitude at which the two terms of a rate balance, where letters or numbers make it positive, with its stability; nothing for
-/// other rates.
+/// The amplitudes that stay, each with its stability: the one at which the two terms of a rate balance, where letters or numbers make it
+/// positive, or those of a rate that is no sum of powers, found by numbers where only a factor and a scale of the amplitude are letters.
 pub(crate) fn steady(a: Symbol, rate: &Expr) -> Vec<LeadingCycle> {
     let balance = || {
         let law = PowerLaw::of(rate, a)?;
@@ -104,7 +107,54 @@ pub(crate) fn steady(a: Symbol, rate: &Expr) -> Vec<LeadingCycle> {
             attracts_where: Some(sign * Expr::product(letters)),
         })
     };
-    balance().into_iter().collect()
+    match PowerLaw::of(rate, a) {
+        Some(_) => balance().into_iter().collect(),
+        None => steady_by_numbers(a, rate).unwrap_or_default(),
+    }
+}
+
+/// The zeros of a rate `letters * scale^n * g(a/scale)`, `g` in numbers alone: `None` for any other.
+fn steady_by_numbers(a: Symbol, rate: &Expr) -> Option<Vec<LeadingCycle>> {
+    /// The amplitudes looked at, in scales: ten to the power of these parts of a hundred.
+    const GRID: std::ops::RangeInclusive<i32> = -300..=300;
+    const PER_DECADE: f64 = 100.0;
+    let letters: Vec<Symbol> = rate.symbols().into_iter().filter(|name| *name != a).collect();
+    let powers = [ratio(1, 2), ratio(-1, 2)];
+    let of_letters = letters.iter().flat_map(|name| {
+        let letter = Expr::from(*name);
+        let size = Expr::function(Function::Absolute, vec![letter.clone()]).ok();
+        let inverses = [Some(&letter), size.as_ref()].map(|scale| Expr::divide(&Expr::one(), scale?).ok());
+        let power = |exponent: &Rational| Expr::power(&letter, &Expr::number(exponent.clone())).ok();
+        let roots = powers.iter().map(power);
+        let scales = [Some(letter.clone()), size].into_iter().chain(inverses).chain(roots);
+        scales.flatten().collect::<Vec<Expr>>()
+    });
+    std::iter::once(Expr::one()).chain(of_letters).find_map(|scale| {
+        let scaled = rate.substitute(a, &(&scale * &Expr::from(a))).ok()?.expand().ok()?;
+        // What every term has in common with the first.
+        let (number, factors) = scaled.terms().first()?.factors();
+        let (outside, _): (Vec<Expr>, Vec<Expr>) = factors.iter().cloned().partition(|factor| !factor.contains(a));
+        let letters = outside.into_iter().filter(|factor| !factor.symbols().is_empty());
+        let common = Expr::product(letters);
+        let quotients = scaled.terms().iter().map(|term| Expr::divide(term, &common).ok());
+        let quotient = Expr::sum(quotients.collect::<Option<Vec<Expr>>>()?);
+        if number.is_zero() || quotient.symbols().into_iter().any(|name| name != a) {
+            return None;
+        }
+        let function = CompiledFunction::new(&quotient, &[a]).ok()?;
+        let value = |amplitude: f64| function.call(&[amplitude]);
+        let grid: Vec<f64> = GRID.map(|k| 10.0_f64.powf(f64::from(k) / PER_DECADE)).collect();
+        let cycle = |pair: &[f64]| {
+            let (before, behind) = (value(pair[0]), value(pair[1]));
+            let root = (before * behind < 0.0).then(|| find_root(value, pair[0], pair[1]).ok())??;
+            let sign = Expr::from(if before > 0.0 { 1 } else { -1 });
+            Some(LeadingCycle {
+                amplitude: &scale * &Expr::number(rounded(root)),
+                attracts_where: Some(sign * &common),
+            })
+        };
+        Some(grid.windows(2).filter_map(cycle).collect())
+    })
 }
 
 /// A sum of powers of the amplitude: exponents, and what stands before.

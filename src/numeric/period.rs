@@ -205,13 +205,36 @@ pub fn swing_with_cuts(
     match swing.path.stop_reason() {
         StopReason::Event { .. } => Ok(swing),
         StopReason::NonFinite { .. } | StopReason::StepTooSmall { .. } => {
-            let ended = swing.end().x;
-            let at_rest = (ended - equilibrium).abs() < 1e-9 * length.abs();
-            Err(PeriodError::Pole {
-                place: if at_rest { equilibrium } else { ended },
-            })
+            Err(ending(acceleration, equilibrium, start, swing.end()))
         }
         _ => Err(PeriodError::NoReturn(swing.end().t)),
+    }
+}
+
+/// What ended a motion that cannot be followed past a state: a place where the force has no value, or that it has left for good.
+fn ending(acceleration: &dyn Fn(f64, f64, f64) -> f64, equilibrium: f64, start: f64, state: State) -> PeriodError {
+    /// So many amplitudes away nothing is swinging.
+    const FAR: f64 = 1e6;
+    /// Times the force at rest, beyond which it is the speed that drives the motion.
+    const DRIVEN: f64 = 1e3;
+    let length = (start - equilibrium).abs();
+    let [moving, still] = [state.v, 0.0].map(|speed| acceleration(state.t, state.x, speed).abs());
+    if (state.x - equilibrium).abs() > FAR * length {
+        return PeriodError::Escapes {
+            start,
+            searched: state.x,
+        };
+    }
+    if still.is_finite() && (!moving.is_finite() || moving > DRIVEN * still) {
+        let six_digits = format!("{:.5e}", state.t);
+        return PeriodError::RunsAway {
+            start,
+            time: six_digits.parse().unwrap_or(state.t),
+        };
+    }
+    let at_rest = (state.x - equilibrium).abs() < 1e-9 * length;
+    PeriodError::Pole {
+        place: if at_rest { equilibrium } else { state.x },
     }
 }
 

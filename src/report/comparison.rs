@@ -62,12 +62,11 @@ pub fn comparison(comparison: &Comparison) -> Document<'_> {
 }
 
 fn method_row(row: &Row) -> MethodRow<'_> {
-    let law = row.solution.law.in_one_line();
     MethodRow {
         row,
         title: row.solution.title(),
-        law,
-        definitions: row.solution.definitions_behind(law.symbols()),
+        law: row.solution.law.in_one_line(),
+        definitions: row.solution.definitions_of_formula(),
         hbar: row.chosen_hbar(),
     }
 }

@@ -521,6 +521,9 @@ impl Expansion<'_> {
             | Function::BesselI0
             | Function::BesselI1
             | Function::EllipticK
+            | Function::JacobiSn
+            | Function::JacobiCn
+            | Function::JacobiDn
             | Function::Gamma => Err(self.not_analytic(term)),
         }
     }

@@ -228,12 +228,13 @@ impl Law {
 }
 
 impl Shown<'_> {
-    /// The symbols of a formula; of what only numbers solve none.
+    /// The symbols of a formula, those of its integrals included; of a system of equations none.
     pub fn symbols(&self) -> BTreeSet<Symbol> {
         match self {
             Self::Squared(law) | Self::Frequency(law) | Self::Relation(law) => law.symbols().into_iter().collect(),
             Self::Closed(form) => form.value.symbols(),
-            Self::Quadrature(_) | Self::System(_) => BTreeSet::new(),
+            Self::Quadrature(lines) => lines.iter().flat_map(Line::symbols).collect(),
+            Self::System(_) => BTreeSet::new(),
         }
     }
 }

@@ -77,6 +77,8 @@ pub enum Note {
     Followed(FollowedRoot),
     /// A resummation has the motion of the series to its first correction.
     MotionOfSeries,
+    /// The motion is written by elliptic functions.
+    EllipticFunctions,
     /// The law is that of the true motion.
     Exact(ExactBy),
     /// Whether the limit cycle attracts.
@@ -442,6 +444,10 @@ impl fmt::Display for Note {
             } => agreement(formatter, *degrees, *small, *step, *order),
             Self::Poles(poles) => poles.fmt(formatter),
             Self::Followed(root) => root.fmt(formatter),
+            Self::EllipticFunctions => formatter.write_str(
+                "sn(u, m), cn(u, m) and dn(u, m) are the elliptic functions of Jacobi of the parameter m = k^2, k being the modulus; K(m) is \
+                 their quarter period",
+            ),
             Self::Exact(by) => by.fmt(formatter),
             Self::Stability(cycle) => write!(formatter, "the limit cycle {}", cycle.stability()),
             Self::RoundedAmplitude {

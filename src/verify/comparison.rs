@@ -18,7 +18,7 @@ use crate::expr::Equation;
 use crate::method::homotopy_analysis::convergence_control;
 use crate::method::numbers::{Known, NoNumbers};
 use crate::method::{Options, Refusal, Unsuited, solve, with_resonance_at};
-use crate::oscillator::Oscillator;
+use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::symbol::Symbol;
 use crate::values::Values;
@@ -188,7 +188,7 @@ pub fn compare(
     let at_first = by_start(first, at);
     let numbers = checked_numbers(first, &at_first)?;
     let meant = meant(oscillator, first, &numbers);
-    let (true_motion, reason) = match TrueMotion::of(oscillator, &meant, &numbers) {
+    let (true_motion, reason) = match super::true_motion(oscillator, first, &meant, &numbers) {
         Ok(motion) => (Some(motion), None),
         Err(error) if error.leaves_the_truth_open() => (None, Some(error)),
         Err(error) => return Err(error.into()),
@@ -223,8 +223,30 @@ pub fn compare(
 /// What every method says: periodic motions, slow ones that settle on none, and refusals of those that say nothing else.
 fn answers(oscillator: &Oscillator, at: &Values, small: Option<&str>) -> (Vec<Solution>, Vec<Solution>, Vec<Refused>) {
     let (mut solutions, mut slow, mut refused) = (Vec::new(), Vec::new(), Vec::new());
+    let in_a_parameter = small.is_none() && !matches!(oscillator.small_parameter(None), Ok(SmallParameter::Amplitude));
     for options in variants(oscillator, small) {
-        let found = with_resonance_at(oscillator, &options, at).and_then(|options| solve(oscillator, &options));
+        let solved = |options: &Options| {
+            with_resonance_at(oscillator, options, at).and_then(|options| solve(oscillator, &options))
+        };
+        let mut found = solved(&options);
+        if found.is_err() && in_a_parameter {
+            // Where the parameter that is small by default leaves a method nothing to expand in, the amplitude may be.
+            let by_amplitude = solved(&Options {
+                small: Some(AmplitudeConvention::Initial.symbol().to_string()),
+                ..options.clone()
+            });
+            let about_small = matches!(
+                &found,
+                Err(Refusal::Oscillator(
+                    OscillatorError::NotSmall { .. }
+                        | OscillatorError::NotPolynomial(_)
+                        | OscillatorError::AmbiguousSmallParameter(_)
+                ))
+            );
+            if by_amplitude.is_ok() || about_small {
+                found = by_amplitude;
+            }
+        }
         match (found, options.method) {
             // Slow equations are compared where their motion settles, as the others are.
             (Ok(solution), _) if solution.slow().is_some() => match solution.on_cycle() {

@@ -48,13 +48,13 @@ use crate::decimal::decimal;
 use crate::exact::Doubles;
 use crate::expr::{EvaluationError, Expr, ExprError};
 use crate::method::numbers::{
-    Known, NoNumbers, Numbers, evaluate, frequency_squared_along, half_a_period, symbol_values,
+    Known, NoNumbers, Numbers, evaluate, frequency_squared_along, half_a_period, law_name, symbol_values,
 };
 use crate::numeric::period::PeriodError;
 use crate::numeric::return_map::NoLimitCycle;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Method, Solution};
+use crate::solution::{AmplitudeConvention, Solution};
 use crate::symbol::Symbol;
 use crate::trajectory::TrajectoryError;
 use crate::values::Values;
@@ -319,7 +319,7 @@ pub(crate) fn judge_to(
     let numbers = checked_numbers(solution, at)?;
     let solution = settled.as_ref().unwrap_or(solution);
     let meant = meant(oscillator, solution, &numbers);
-    let truth = TrueMotion::of(oscillator, &meant, &numbers)?;
+    let truth = meant_motion(oscillator, solution, &meant, &numbers)?;
     let (found, reason) = numbers_or_reason(oscillator, solution, &numbers);
     let frequency = found.as_ref().map(|found| found.frequency_squared.sqrt());
     let relative_error = frequency.map(|frequency| frequency / truth.frequency - 1.0);
@@ -356,7 +356,7 @@ pub(crate) fn judge_to(
         reason,
         true_frequency: truth.frequency,
         relative_error,
-        judged_on: judged_on(solution),
+        judged_on: law_name(solution),
         error_of_omega: series_of_omega(solution, &numbers).map(|omega| omega / truth.frequency - 1.0),
         max_deviation,
         residual: residual.filter(|value| value.is_finite()),
@@ -556,7 +556,7 @@ fn true_path(
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<TrueMotion, VerificationError> {
     let meant = meant(oscillator, solution, numbers);
-    let truth = TrueMotion::of(oscillator, &meant, numbers)?;
+    let truth = meant_motion(oscillator, solution, &meant, numbers)?;
     match truth.has_path() {
         true => Ok(truth),
         false => Err(VerificationError::NoPath),
@@ -597,9 +597,9 @@ fn numbers_or_reason(
 ) -> (Option<Numbers>, Option<NoNumbers>) {
     match evaluate(oscillator, solution, numbers) {
         Ok(found) if found.frequency_squared > 0.0 && found.frequency_squared.is_finite() => (Some(found), None),
-        Ok(_) => (None, Some(NoNumbers::NotReal)),
+        Ok(_) => (None, Some(NoNumbers::not_positive(solution))),
         Err(NoNumbers::NoValue | NoNumbers::Undefined { .. }) if law_overflows(solution, numbers) => {
-            let law = judged_on(solution);
+            let law = law_name(solution);
             (None, Some(NoNumbers::LawBeyond { law }))
         }
         Err(reason) => (None, Some(reason)),
@@ -614,19 +614,6 @@ fn law_overflows(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> bool {
         (None, None) => return false,
     };
     law.overflow(numbers).is_some()
-}
-
-/// The law that [`formula_frequency`] takes.
-fn judged_on(solution: &Solution) -> &'static str {
-    // What is solved by numbers gives omega itself, but for the one-term laws, which are integrals for omega^2.
-    let by_integral = solution.law.quadrature().is_some() && solution.method != Method::Exact;
-    match solution.law.closed_form() {
-        _ if solution.law.frequency_squared().is_some() || solution.law.relation().is_some() || by_integral => {
-            "omega^2"
-        }
-        Some(form) => form.name(),
-        None => "omega",
-    }
 }
 
 /// omega by its own series, where the formula has one of omega^2 as well.
@@ -671,6 +658,20 @@ fn meant(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
             expected()
         },
     }
+}
+
+/// The true motion that an answer is meant for.
+///
+/// # Errors
+/// There is none, or it cannot be followed; where motions are periodic is said with it.
+fn meant_motion(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    meant: &Meant,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<TrueMotion, VerificationError> {
+    let found = TrueMotion::of(oscillator, meant, numbers);
+    found.map_err(|error| validity::why_no_motion(oscillator, solution, numbers, error))
 }
 
 /// The force about the equilibrium of an answer; `None` where a symbol of it has no number.

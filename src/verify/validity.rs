@@ -7,11 +7,14 @@ use super::backbone::TrueBackbone;
 use super::bounds::bounds;
 use super::convergence::convergence;
 use super::reach;
-use super::{force_of, meant};
+use super::{VerificationError, force_of, meant};
+use crate::conservative::force::Force;
 use crate::conservative::well::Well;
 use crate::decimal::significant;
-use crate::method::numbers::{error_of_integral, frequency_squared_of};
+use crate::method::inertia;
+use crate::method::numbers::{error_of_integral, frequency_squared_of, law_name};
 use crate::method::table::{Entry, Sees};
+use crate::numeric::ode::energy::PeriodError;
 use crate::numeric::ode::root::find_root;
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Method, Solution};
@@ -85,7 +88,7 @@ pub(super) fn ranges(
     ranges
 }
 
-/// The escape from the well; nothing for motions that are not conservative.
+/// The escape from the well; `None` for motions without an energy that is known in closed form.
 pub(super) fn of_equation(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -139,11 +142,54 @@ pub(super) fn is_over_several_wells(
 
 /// The well of the motion that an answer is meant for.
 fn well_of(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Well> {
-    if !oscillator.of_position_alone() || solution.amplitude != AmplitudeConvention::Initial {
+    if solution.amplitude != AmplitudeConvention::Initial || solution.limit_cycle.is_some() {
         return None;
     }
     let amplitude = *numbers.get(&solution.amplitude.symbol())?;
-    Well::new(&force_of(oscillator, solution, numbers)?, amplitude)
+    if oscillator.of_position_alone() {
+        return Well::new(&force_of(oscillator, solution, numbers)?, amplitude);
+    }
+    let forces = inertia::forces(oscillator)?;
+    let [weighted, force] =
+        forces.map(|force| Force::new(&force, oscillator.coordinate, &solution.equilibrium, numbers, amplitude));
+    Well::with_inertia(&weighted?, &force?, amplitude)
+}
+
+/// Why there is no motion to judge by, with the amplitudes at which there is one where the inertia depends on the position: Runge-Kutta
+/// alone does not know them. Where energy is conserved as it stands the error says so already.
+pub(super) fn why_no_motion(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    error: VerificationError,
+) -> VerificationError {
+    /// As near to the end of the well, relatively, as its place is known.
+    const ON: f64 = 1e-9;
+    let VerificationError::Period(lost) = error else {
+        return error;
+    };
+    let well = match oscillator.of_position_alone() {
+        true => None,
+        false => well_of(oscillator, solution, numbers),
+    };
+    let (symbol, coordinate) = (solution.amplitude.symbol(), oscillator.coordinate);
+    let end = well.and_then(|well| {
+        let amplitude = *numbers.get(&symbol)?;
+        Some((well, well.on_side(amplitude)?, amplitude))
+    });
+    VerificationError::Period(match end {
+        Some((_, end, amplitude)) if end.rim.separatrix && (amplitude / end.amplitude - 1.0).abs() <= ON => {
+            PeriodError::Separatrix {
+                start: solution.equilibrium.evaluate(numbers).unwrap_or(0.0) + amplitude,
+                place: end.rim.place,
+            }
+        }
+        Some((well, end, amplitude)) if amplitude / end.amplitude >= 1.0 => PeriodError::OutsideWell {
+            error: Box::new(lost),
+            range: well.in_words(symbol, coordinate),
+        },
+        _ => lost,
+    })
 }
 
 /// The largest amplitude of motions over several wells, up to four times that asked for, below which the law's omega^2 is not positive.
@@ -172,8 +218,9 @@ fn positive_from(
     let last = values.windows(2).rposition(|pair| pair[0] <= 0.0 && pair[1] > 0.0)?;
     let zero = find_root(squared, place(last), place(last + 1)).ok()?;
     let at = significant(zero.copysign(amplitude), 6);
+    let law = law_name(solution);
     Some(Range {
-        text: format!("omega^2 of the formula is positive from {symbol} = {at} on"),
+        text: format!("{law} of the formula is positive from {symbol} = {at} on"),
         outside: amplitude.abs() <= zero,
     })
 }
@@ -228,7 +275,7 @@ fn vanishing(
             return Some(Range {
                 text: match is_pole {
                     true => format!("the formula has a pole at {symbol} = {at}"),
-                    false => format!("omega^2 of the formula reaches zero at {symbol} = {at}"),
+                    false => format!("{} of the formula reaches zero at {symbol} = {at}", law_name(solution)),
                 },
                 outside: amplitude.abs() >= zero,
             });

@@ -695,8 +695,10 @@ fn a_pendulum_that_goes_over_the_top_is_said_not_to_come_back() {
             .expect("values")
     };
     let refused = judge(&oscillator, &solution, &at("1"), 0.01).expect_err("it does not come back");
-    let escapes = matches!(refused, VerificationError::Period(PeriodError::Escapes { .. }));
-    assert!(escapes, "{refused}");
+    let VerificationError::Period(PeriodError::OutsideWell { error, .. }) = &refused else {
+        panic!("{refused}");
+    };
+    assert!(matches!(**error, PeriodError::Escapes { .. }), "{refused}");
     assert!(judge(&oscillator, &solution, &at("1/2"), 0.01).is_ok());
 }
 
@@ -739,5 +741,40 @@ fn a_law_that_is_off_near_rest_has_a_range_further_out() {
                 range.text
             );
         }
+    }
+}
+
+/// Where the parameter that is small by default leaves a series nothing to expand in, the table has the series in the amplitude.
+#[test]
+fn a_table_expands_in_the_amplitude_where_no_parameter_is_small() {
+    for (equation, at) in [
+        (
+            "x'' + x + eps*x^3 + d*x^2 = 0",
+            vec![("A", "1/5"), ("eps", "1/10"), ("d", "1/5")],
+        ),
+        ("x'' + x + eps*x^3 + x^5 = 0", vec![("A", "1/5"), ("eps", "1/10")]),
+        ("x'' + eps*x + x^3 = 0", vec![("A", "1/5"), ("eps", "1")]),
+    ] {
+        let table = compared(equation, &at);
+        let mut rows = table.rows.iter();
+        let row = rows.find(|row| row.solution.method == Method::LindstedtPoincare);
+        let row = row.unwrap_or_else(|| panic!("{equation}: {:?}", table.refused));
+        assert_eq!(row.solution.small_parameter, Symbol::new("A"), "{equation}");
+        assert!(row.relative_error.is_some_and(|error| error.abs() < 1e-4), "{equation}");
+    }
+}
+
+/// A law that names the equilibrium says what the name stands for, be it an integral.
+#[test]
+fn every_formula_of_a_table_has_its_definitions() {
+    let table = compared("x'' + exp(x) - 2 = 0", &[("A", "3/10")]);
+    for row in &table.rows {
+        let formula = row.solution.formula();
+        assert_eq!(
+            formula.contains("x_e"),
+            formula.contains(", x_e = 0.69314718055994"),
+            "{formula}"
+        );
+        assert!(formula.len() < 2000, "{formula}");
     }
 }

@@ -452,3 +452,84 @@ fn high_powers_end() {
         assert!(refusal.to_string().contains("harmonics at this order"), "{refusal}");
     }
 }
+
+/// The amplitude at which `mean(s(a cos) sin^2) = 0`, by bisection on a sum.
+fn balanced_amplitude(share: &dyn Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    const POINTS: u32 = 200_000;
+    let work = |a: f64| -> f64 {
+        let angle = |k: u32| std::f64::consts::PI * (f64::from(k) + 0.5) / f64::from(POINTS);
+        (0..POINTS)
+            .map(|k| share(a * angle(k).cos()) * angle(k).sin().powi(2))
+            .sum()
+    };
+    let rising = work(low) < 0.0;
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if (work(middle) < 0.0) == rising {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Damping that jumps with the position: averaged in closed form, its limit cycle found by numbers and judged by the return map.
+#[test]
+fn damping_that_jumps_with_the_position_has_its_limit_cycle() {
+    type Share = fn(f64) -> f64;
+    let jump: Share = |x| if x.abs() < 1.0 { 1.0 } else { -1.0 };
+    let cases: [(&str, &[(&str, &str)], Share, f64); 5] = [
+        ("x'' - mu*sgn(1 - x^2)*x' + x = 0", &[("mu", "1/10")], jump, 1.0),
+        ("x'' - mu*sgn(1 - abs(x))*x' + x = 0", &[("mu", "1/10")], jump, 1.0),
+        ("x'' - mu*(1 - 2*H(x^2 - 1))*x' + x = 0", &[("mu", "1/10")], jump, 1.0),
+        (
+            "x'' - mu*sgn(d^2 - x^2)*x' + x = 0",
+            &[("mu", "1/10"), ("d", "-2")],
+            jump,
+            2.0,
+        ),
+        (
+            "x'' - mu*(1 - 3*H(x - 1))*x' + x = 0",
+            &[("mu", "1/10")],
+            |x| if x < 1.0 { 1.0 } else { -2.0 },
+            1.0,
+        ),
+    ];
+    for (equation, at, share, scale) in cases {
+        let expected = scale * balanced_amplitude(&share, 1.01, 20.0);
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        let solution = solve(&oscillator, &Options::default()).expect(equation);
+        assert_eq!(solution.method, Method::Averaging, "{equation}");
+        let mut values = lindstedt::Values::default();
+        for (name, value) in at {
+            values
+                .insert((*name).into(), value.parse().expect("a number"))
+                .expect("a value");
+        }
+        let verification =
+            judge(&oscillator, &solution, &values, 0.01).unwrap_or_else(|error| panic!("{equation}: {error}"));
+        let found = verification
+            .values
+            .iter()
+            .find(|(name, _)| name.name() == "a")
+            .expect("an amplitude")
+            .1;
+        assert!((found / expected - 1.0).abs() < 1e-5, "{equation}: {found} {expected}");
+        let slow = solution.modulation.as_ref().expect("slow equations");
+        assert_eq!(slow.steady.len(), 1, "{equation}");
+        assert_eq!(
+            slow.steady[0]
+                .attracts_where
+                .as_ref()
+                .map(ToString::to_string)
+                .as_deref(),
+            Some("mu"),
+            "{equation}"
+        );
+        assert!(
+            verification.max_deviation.is_some_and(|deviation| deviation < 0.1),
+            "{equation}"
+        );
+    }
+}

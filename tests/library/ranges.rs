@@ -484,3 +484,210 @@ fn a_range_ends_where_it_ends_for_a_smaller_motion() {
         assert!((far / near - 1.0).abs() < 2e-3, "A = {amplitude}: {far} {near}");
     }
 }
+
+/// What a refusal says of a motion that is released there.
+fn refused(equation: &str, amplitude: &str) -> String {
+    let oscillator = Oscillator::parse(equation).unwrap();
+    let solution = solve(&oscillator, &Options::default()).unwrap();
+    let mut values = Values::default();
+    values.insert(Symbol::new("A"), amplitude.parse().unwrap()).unwrap();
+    match judge(&oscillator, &solution, &values, 0.01) {
+        Ok(_) => panic!("{equation}: a motion from {amplitude}"),
+        Err(error) => error.to_string(),
+    }
+}
+
+/// Released on the wall of a well that levels off on the other side, a motion has the energy to leave from where V is that at infinity.
+#[test]
+fn a_motion_must_turn_back_on_the_other_side_too() {
+    for (equation, inside, outside, end) in [
+        // V = 1/(2 r^2) - 1/r, r = 1 + x, is zero at r = 1/2 and at infinity.
+        (
+            "x'' + 1/(1 + x)^2 - 1/(1 + x)^3 = 0",
+            "-0.49",
+            "-0.51",
+            "A > -0.5: beyond it the motion escapes to x = infinity",
+        ),
+        // Lennard-Jones: r^-12 - 2 r^-6 is zero at r^6 = 1/2.
+        (
+            "x'' + 12*((1 + x)^(-7) - (1 + x)^(-13)) = 0",
+            "-0.1",
+            "-0.12",
+            "A > -0.109101: beyond it the motion escapes to x = infinity",
+        ),
+        // Morse: (1 - exp(-x))^2/2 is 1/2 at infinity and at -log 2.
+        (
+            "x'' + (1 - exp(-x))*exp(-x) = 0",
+            "-0.6",
+            "-0.7",
+            "A > -0.693147: beyond it the motion escapes to x = infinity",
+        ),
+        (
+            "x'' + (exp(x) - 1)*exp(x) = 0",
+            "0.6",
+            "0.7",
+            "A < 0.693147: beyond it the motion escapes to x = -infinity",
+        ),
+        // V = 1/r - 2/sqrt(r), which dies away slowly: zero at r = 1/4.
+        (
+            "x'' + (1 + x)^(-3/2) - (1 + x)^(-2) = 0",
+            "-0.7",
+            "-0.8",
+            "A > -0.75: beyond it the motion escapes to x = infinity",
+        ),
+        // V = tanh(x)^2/2 + tanh(x)/4, from -1/32 at tanh(x) = -1/4: 1/4 on the left and where tanh(x) = 1/2, 3/4 on the right.
+        (
+            "x'' + (tanh(x) + 1/4)*(1 - tanh(x)^2) = 0",
+            "0.7",
+            "0.9",
+            "A < 0.804719: beyond it the motion escapes to x = -infinity",
+        ),
+    ] {
+        let found = judged(equation, Method::Exact, None, inside);
+        let text = range(&found, "periodic").map(|range| range.text.clone());
+        assert_eq!(text, Some(format!("periodic for {end}")), "{equation}");
+        let words = refused(equation, outside);
+        assert!(
+            words.ends_with(&format!("motions are periodic for {end}")),
+            "{equation}: {words}"
+        );
+    }
+    // log(r) + 1/r grows without end, and so does sqrt(1 + x^2).
+    let found = judged("x'' + 1/(1 + x) - 1/(1 + x)^2 = 0", Method::Exact, None, "-0.9");
+    let text = range(&found, "periodic").map(|range| range.text.clone());
+    assert_eq!(text.as_deref(), Some("periodic for A > -1: the force ends at x = -1"));
+    let found = judged("x'' + x/sqrt(1 + x^2) = 0", Method::Exact, None, "30");
+    assert!(range(&found, "periodic").is_none(), "{:?}", found.ranges);
+}
+
+/// `M x'^2/2 + U` with `M = exp(2 int g)`, `U' = M f` tells where motions of `x'' + g x'^2 + f = 0` are periodic.
+#[test]
+fn inertia_that_depends_on_the_position_has_its_wells() {
+    for (equation, inside, outside, end) in [
+        // M = 1 + x^2, U = x^2/2 - x^4/4: a hilltop at one.
+        (
+            "(1 + x^2)*x'' + x*x'^2 + x*(1 - x^2) = 0",
+            "0.9",
+            "1.2",
+            "|A| < 1: the separatrix passes the unstable equilibrium x = 1",
+        ),
+        // M = exp(2 x), U = exp(2 x)(x/2 - 1/4): zero at 1/2 and infinitely far to the left.
+        (
+            "x'' + x + x'^2 = 0",
+            "0.45",
+            "1.2",
+            "A < 0.5: beyond it the motion escapes to x = -infinity",
+        ),
+        // M = exp(-x), U = -exp(-x)(1 + x).
+        (
+            "x'' + x - x'^2/2 = 0",
+            "-0.9",
+            "-1.1",
+            "A > -1: beyond it the motion escapes to x = infinity",
+        ),
+        // M = 1 - x^2 is zero where the force is infinite, and U = x^2/2.
+        (
+            "(1 - x^2)*x'' - x*x'^2 + x = 0",
+            "0.9",
+            "1.1",
+            "|A| < 1: the force ends at x = 1",
+        ),
+        // About x = 1: M = exp(2 x), U' = exp(2 x)(x^2 - 1), U = exp(2 x)(2 x^2 - 2 x - 1)/4, at x = -1 3 exp(-2)/4.
+        (
+            "x'' + x'^2 + x^2 - 1 = 0",
+            "0.3",
+            "0.45",
+            "-2 < A < 0.373508: the separatrix passes the unstable equilibrium x = -1",
+        ),
+    ] {
+        let found = judged(equation, Method::Exact, None, inside);
+        let text = range(&found, "periodic").map(|range| range.text.clone());
+        assert_eq!(text, Some(format!("periodic for {end}")), "{equation}");
+        let words = refused(equation, outside);
+        assert!(
+            words.ends_with(&format!("motions are periodic for {end}")),
+            "{equation}: {words}"
+        );
+        assert!(
+            !words.contains("no finite value") && words.len() < 250,
+            "{equation}: {words}"
+        );
+    }
+    let on_the_hilltop = refused("(1 + x^2)*x'' + x*x'^2 + x*(1 - x^2) = 0", "1");
+    assert!(on_the_hilltop.contains("it is on the separatrix"), "{on_the_hilltop}");
+    // What velocities add that has no energy is followed, and what becomes of the motion is said.
+    let runs_away = refused("x'' + x + x'^2 = 0", "0.6");
+    assert!(runs_away.contains("its speed grows beyond all bounds"), "{runs_away}");
+}
+
+/// Averaged to second order, `x'' + x + x'^2 = 0` has `omega = 1 - A^2/6`: it is omega that is negative, and no square.
+#[test]
+fn a_negative_frequency_is_said_of_omega() {
+    let oscillator = Oscillator::parse("x'' + x + x'^2 = 0").unwrap();
+    let table = lindstedt::verify::comparison::compare(&oscillator, &"A = -3".parse().unwrap(), None, 0.01).unwrap();
+    let reason = |method: Method, order: u32| {
+        let mut rows = table.rows.iter();
+        let row = rows.find(|row| row.solution.method == method && row.solution.order == order);
+        row.and_then(|row| row.reason.as_ref()).map(ToString::to_string)
+    };
+    assert_eq!(
+        reason(Method::Averaging, 2).as_deref(),
+        Some("not positive: omega <= 0")
+    );
+    let solution = &table
+        .rows
+        .iter()
+        .find(|row| row.solution.method == Method::Averaging && row.solution.order == 2);
+    let motion = solution.unwrap().solution.motion_at(&"A = -3".parse().unwrap());
+    assert_eq!(motion.unwrap_err().to_string(), "not positive: omega <= 0");
+    // omega^2 = 1 - A^2/3 - 4 A^3/9 - 43 A^4/72.
+    assert_eq!(
+        reason(Method::LindstedtPoincare, 4).as_deref(),
+        Some("not real: omega^2 <= 0")
+    );
+}
+
+/// Motions that are known in closed form are judged as they are written, against Runge-Kutta; of a pendulum `sin(x/2)` is a `sn`, of `x^3` the
+/// motion a `cn`, of `x^2` a `sn^2`.
+#[test]
+fn exact_motions_in_closed_form_are_the_true_ones() {
+    for (equation, amplitudes, written) in [
+        ("x'' + 4*x = 0", ["2", "-1"], "A*cos(2*t)"),
+        ("x'' + x^3 = 0", ["2", "-1/10"], "A*cn(A*t, 1/2)"),
+        (
+            "x'' + x + x^3 = 0",
+            ["20", "-1/2"],
+            "A*cn(t*sqrt(1 + A^2), A^2/(2*(1 + A^2)))",
+        ),
+        (
+            "x'' + x - x^3 = 0",
+            ["99/100", "-1/2"],
+            "A*cn(t*sqrt(1 - A^2), -A^2/(2*(1 - A^2)))",
+        ),
+        ("x'' + 2*sin(3*x) = 0", ["1", "-1/2"], "sn("),
+        ("x'' + x + x^2 = 0", ["9/20", "-9/10"], "sn("),
+        ("x'' + x^2 - 2 = 0", ["7/5", "-2"], "sn("),
+        ("x'' + x - x^3 + 2*x^5 = 0", ["3/2", "-1/2"], "dn("),
+    ] {
+        for amplitude in amplitudes {
+            let found = judged(equation, Method::Exact, None, amplitude);
+            let deviation = found.max_deviation.expect("a motion");
+            assert!(deviation < 1e-8, "{equation} from {amplitude}: {deviation:e}");
+        }
+        let oscillator = Oscillator::parse(equation).unwrap();
+        let options = Options {
+            method: Some(Method::Exact),
+            ..Options::default()
+        };
+        let solution = solve(&oscillator, &options).unwrap();
+        let motion = solution.closed_motion.as_ref().expect("a motion").to_string();
+        assert!(motion.contains(written), "{equation}: {motion}");
+        // What is exported reads back.
+        let document = lindstedt::export::json::solution(&solution, None);
+        assert_eq!(
+            document.read().unwrap().closed_motion,
+            solution.closed_motion,
+            "{equation}"
+        );
+    }
+}

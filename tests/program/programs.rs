@@ -201,7 +201,7 @@ fn examples() -> Vec<Case> {
 }
 
 /// Equations and values at which every method that has an answer is run, and how many must have one.
-const EQUATIONS: [(&str, &str, usize); 14] = [
+const EQUATIONS: [(&str, &str, usize); 16] = [
     ("x'' + x + eps*x^3 = 0", "A = 3/2, eps = 1/2", 14),
     ("x'' + k*x + eps*x^3 = 0", "A = 3/2, eps = -1/20, k = 2", 14),
     ("x'' + sin(x) = 0", "A = 6/5", 13),
@@ -211,6 +211,8 @@ const EQUATIONS: [(&str, &str, usize); 14] = [
     ("x'' + exp(x) - 1 = 0", "A = 1/1000", 7),
     ("x'' + x + x^2 + x^3 - 1/5 = 0", "A = -3/10", 9),
     ("x'' + x + x*abs(x) = 0", "A = -1/2", 10),
+    ("x'' + x + x^2 = 0", "A = -3/10", 8),
+    ("x'' + x - x^3 + 2*x^5 = 0", "A = -6/5", 12),
     (
         "x'' + lambda*x + gamma*x^(1/3) = 0",
         "A = 2/5, gamma = 1/3, lambda = 3",

@@ -127,6 +127,9 @@ fn function(function: Function) -> &'static str {
         Function::BesselI0 => "bessel_i0",
         Function::BesselI1 => "bessel_i1",
         Function::EllipticK => "elliptic_k",
+        Function::JacobiSn => "jacobi_sn",
+        Function::JacobiCn => "jacobi_cn",
+        Function::JacobiDn => "jacobi_dn",
         Function::Gamma => "tgamma",
         other => other.name(),
     }
@@ -250,6 +253,56 @@ static double elliptic_k(double m)
         a = mean;
     }
     return PI/(a + b);
+}
+"
+        }
+        Function::JacobiSn => {
+            "// The elliptic functions sn, cn and dn of Jacobi, m = k^2 < 1, by the arithmetic-geometric mean.
+static double jacobi_functions(double u, double m, int which)
+{
+    if (!(m < 1.0)) {
+        return NAN;
+    }
+    const double scale = m < 0.0 ? sqrt(1.0 - m) : 1.0;
+    const double p = m < 0.0 ? -m/(1.0 - m) : m;
+    double a = 1.0, b = sqrt(1.0 - p), ratios[8];
+    for (int k = 0; k < 8; k++) {
+        ratios[k] = (a - b)/(a + b);
+        const double mean = (a + b)/2.0;
+        b = sqrt(a*b);
+        a = mean;
+    }
+    double phi = 256.0*a*u*scale;
+    for (int k = 7; k >= 0; k--) {
+        phi = (phi + asin(ratios[k]*sin(phi)))/2.0;
+    }
+    const double s = sin(phi), c = cos(phi), d = sqrt(c*c + (1.0 - p)*s*s);
+    if (m < 0.0) {
+        return which == 0 ? s/(d*scale) : which == 1 ? c/d : 1.0/d;
+    }
+    return which == 0 ? s : which == 1 ? c : d;
+}
+
+// The elliptic function sn of Jacobi.
+static double jacobi_sn(double u, double m)
+{
+    return jacobi_functions(u, m, 0);
+}
+"
+        }
+        Function::JacobiCn => {
+            "// The elliptic function cn of Jacobi.
+static double jacobi_cn(double u, double m)
+{
+    return jacobi_functions(u, m, 1);
+}
+"
+        }
+        Function::JacobiDn => {
+            "// The elliptic function dn of Jacobi.
+static double jacobi_dn(double u, double m)
+{
+    return jacobi_functions(u, m, 2);
 }
 "
         }

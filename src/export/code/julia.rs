@@ -87,6 +87,9 @@ fn function(function: Function) -> &'static str {
         Function::BesselI1 => "bessel_i1",
         Function::Gamma => "gamma_function",
         Function::EllipticK => "elliptic_k",
+        Function::JacobiSn => "jacobi_sn",
+        Function::JacobiCn => "jacobi_cn",
+        Function::JacobiDn => "jacobi_dn",
         other => other.name(),
     }
 }
@@ -174,6 +177,49 @@ function elliptic_k(m)
         a, b = (a + b)/2, sqrt(a*b)
     end
     return pi/(a + b)
+end
+"#
+        }
+        Function::JacobiSn => {
+            r#""The elliptic functions sn, cn and dn of Jacobi, m = k^2 < 1, by the arithmetic-geometric mean."
+function jacobi_functions(u, m)
+    m < 1 || throw(DomainError(m, "sn, cn and dn have no value for m >= 1 here"))
+    if m < 0
+        scale = sqrt(1 - m)
+        s, c, d = jacobi_functions(u*scale, -m/(1 - m))
+        return s/(d*scale), c/d, 1/d
+    end
+    a, b = 1.0, sqrt(1 - m)
+    ratios = zeros(8)
+    for k in 1:8
+        ratios[k] = (a - b)/(a + b)
+        a, b = (a + b)/2, sqrt(a*b)
+    end
+    phi = 256*a*u
+    for k in 8:-1:1
+        phi = (phi + asin(ratios[k]*sin(phi)))/2
+    end
+    s, c = sin(phi), cos(phi)
+    return s, c, sqrt(c*c + (1 - m)*s*s)
+end
+
+"The elliptic function sn of Jacobi."
+function jacobi_sn(u, m)
+    return jacobi_functions(u, m)[1]
+end
+"#
+        }
+        Function::JacobiCn => {
+            r#""The elliptic function cn of Jacobi."
+function jacobi_cn(u, m)
+    return jacobi_functions(u, m)[2]
+end
+"#
+        }
+        Function::JacobiDn => {
+            r#""The elliptic function dn of Jacobi."
+function jacobi_dn(u, m)
+    return jacobi_functions(u, m)[3]
 end
 "#
         }

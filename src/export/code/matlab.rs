@@ -82,6 +82,9 @@ fn function(function: Function) -> &'static str {
         Function::BesselI1 => "bessel_i1",
         Function::Gamma => "gamma",
         Function::EllipticK => "elliptic_k",
+        Function::JacobiSn => "jacobi_sn",
+        Function::JacobiCn => "jacobi_cn",
+        Function::JacobiDn => "jacobi_dn",
         other => other.name(),
     }
 }
@@ -180,6 +183,57 @@ function value = elliptic_k(m)
         a = mean_of_both;
     end
     value = pi./(a + b);
+end
+"
+        }
+        Function::JacobiSn => {
+            "% The elliptic functions sn, cn and dn of Jacobi, m = k^2 < 1, by the arithmetic-geometric mean.
+function [s, c, d] = jacobi_functions(u, m)
+    u = u + 0*m;
+    m = m + 0*u;
+    m(~(m < 1)) = NaN;
+    scale = sqrt(1 - min(m, 0));
+    p = max(m, 0) - min(m, 0)./(1 - min(m, 0));
+    a = ones(size(m));
+    b = sqrt(1 - p);
+    ratios = cell(1, 8);
+    for k = 1:8
+        ratios{k} = (a - b)./(a + b);
+        mean_of_both = (a + b)/2;
+        b = sqrt(a.*b);
+        a = mean_of_both;
+    end
+    phi = 256*a.*u.*scale;
+    for k = 8:-1:1
+        phi = (phi + asin(ratios{k}.*sin(phi)))/2;
+    end
+    s = sin(phi);
+    c = cos(phi);
+    d = sqrt(c.^2 + (1 - p).*s.^2);
+    below = ones(size(m));
+    below(m < 0) = d(m < 0);
+    s = s./(below.*scale);
+    c = c./below;
+    d(m < 0) = 1./d(m < 0);
+end
+
+% The elliptic function sn of Jacobi.
+function value = jacobi_sn(u, m)
+    [value, ~, ~] = jacobi_functions(u, m);
+end
+"
+        }
+        Function::JacobiCn => {
+            "% The elliptic function cn of Jacobi.
+function value = jacobi_cn(u, m)
+    [~, value, ~] = jacobi_functions(u, m);
+end
+"
+        }
+        Function::JacobiDn => {
+            "% The elliptic function dn of Jacobi.
+function value = jacobi_dn(u, m)
+    [~, ~, value] = jacobi_functions(u, m);
 end
 "
         }

@@ -21,6 +21,8 @@ use crate::verify::Verification;
 const FREQUENCY: &str = "angular_frequency";
 const DISPLACEMENT: &str = "displacement";
 const VELOCITY: &str = "velocity";
+const ABOUT_DISPLACEMENT: &str = "The displacement at the time t, equilibrium included";
+const ABOUT_VELOCITY: &str = "Its derivative, the velocity at the time t";
 
 /// Letters in a line of the header.
 const WIDTH: usize = 96;
@@ -49,7 +51,9 @@ pub(super) fn of_solution(
             let frequency = frequency(oscillator, solution, &names, law);
             let arguments = frequency.arguments.clone();
             routines.push(frequency);
-            if !solution.displacement.is_zero() {
+            if let Some(motion) = &solution.closed_motion {
+                routines.extend(written_motion(solution, &names, motion)?);
+            } else if !solution.displacement.is_zero() {
                 routines.extend(motion(oscillator, solution, &names, &arguments));
             }
             remarks.extend(unseen(oscillator, solution).map(str::to_owned));
@@ -58,7 +62,7 @@ pub(super) fn of_solution(
         (Err(reason), None) => return Err(NoCode::SolvedByNumbers(reason)),
         (Err(_), Some(verification)) => routines.push(constant_frequency(verification)?),
     }
-    let by_numbers = formula.is_err() || is_exact;
+    let by_numbers = formula.is_err() || (is_exact && solution.closed_motion.is_none());
     match verification {
         Some(verification) if by_numbers => {
             let numbers = verification.motion.as_ref().zip(verification.frequency);
@@ -73,7 +77,7 @@ pub(super) fn of_solution(
             let what = if formula.is_err() { "Everything" } else { "The motion" };
             remarks.push(format!("{what} is in numbers, which hold at {} alone.", at.join(", ")));
         }
-        None if is_exact => {
+        None if by_numbers => {
             remarks.push(
                 "The motion follows by quadrature of the energy: at given values it is here in numbers.".to_owned(),
             );
@@ -433,6 +437,26 @@ fn motion(oscillator: &Oscillator, solution: &Solution, names: &Names, of_freque
     both(names, beginnings, before, displaced.collect(), moving.collect())
 }
 
+/// Displacement and velocity of a motion that is an expression in the time.
+fn written_motion(solution: &Solution, names: &Names, motion: &Expr) -> Result<[Routine; 2], NoCode> {
+    let velocity = motion.differentiate(names.time).map_err(|_| NoCode::NoMotion(None))?;
+    let routine = |name, about: &str, expression: &Expr| {
+        let (definitions, mut arguments) = resolved(solution, names, expression.symbols());
+        arguments.insert(0, names.time);
+        Routine {
+            name,
+            about: about.to_owned(),
+            arguments,
+            body: variables(definitions).collect(),
+            result: Value::Expression(expression.clone()),
+        }
+    };
+    Ok([
+        routine(DISPLACEMENT, ABOUT_DISPLACEMENT, motion),
+        routine(VELOCITY, ABOUT_VELOCITY, &velocity),
+    ])
+}
+
 /// `theta = omega*t`.
 fn angle(names: &Names) -> Statement {
     let angle = Expr::from(names.omega) * Expr::from(names.time);
@@ -461,7 +485,7 @@ fn both(
     };
     let displacement = Routine {
         name: DISPLACEMENT,
-        about: "The displacement at the time t, equilibrium included".to_owned(),
+        about: ABOUT_DISPLACEMENT.to_owned(),
         arguments: displacement.arguments,
         body: displacement.body,
         result,
@@ -482,7 +506,7 @@ fn both(
     };
     let velocity = Routine {
         name: VELOCITY,
-        about: "Its derivative, the velocity at the time t".to_owned(),
+        about: ABOUT_VELOCITY.to_owned(),
         arguments: velocity.arguments,
         body: velocity.body,
         result,

@@ -44,6 +44,9 @@ fn function(function: Function) -> &'static str {
         Function::BesselI0 => "bessel_i0",
         Function::BesselI1 => "bessel_i1",
         Function::EllipticK => "elliptic_k",
+        Function::JacobiSn => "jacobi_sn",
+        Function::JacobiCn => "jacobi_cn",
+        Function::JacobiDn => "jacobi_dn",
         Function::Gamma => "gamma",
         other => other.name(),
     }
@@ -134,6 +137,47 @@ fn helper(function: Function) -> Option<&'static str> {
     for _ in range(40):
         a, b = (a + b)/2, sqrt(a*b)
     return pi/(a + b)
+
+"#
+        }
+        Function::JacobiSn => {
+            r#"def jacobi_functions(u, m):
+    """The elliptic functions sn, cn and dn of Jacobi, m = k^2 < 1, by the arithmetic-geometric mean."""
+    if not m < 1:
+        raise ValueError("sn, cn and dn have no value for m >= 1 here")
+    if m < 0:
+        scale = sqrt(1 - m)
+        s, c, d = jacobi_functions(u*scale, -m/(1 - m))
+        return s/(d*scale), c/d, 1/d
+    a, b = 1.0, sqrt(1 - m)
+    ratios = []
+    for _ in range(8):
+        ratios.append((a - b)/(a + b))
+        a, b = (a + b)/2, sqrt(a*b)
+    phi = 256*a*u
+    for ratio in reversed(ratios):
+        phi = (phi + asin(ratio*sin(phi)))/2
+    s, c = sin(phi), cos(phi)
+    return s, c, sqrt(c*c + (1 - m)*s*s)
+
+
+def jacobi_sn(u, m):
+    """The elliptic function sn of Jacobi."""
+    return jacobi_functions(u, m)[0]
+
+"#
+        }
+        Function::JacobiCn => {
+            r#"def jacobi_cn(u, m):
+    """The elliptic function cn of Jacobi."""
+    return jacobi_functions(u, m)[1]
+
+"#
+        }
+        Function::JacobiDn => {
+            r#"def jacobi_dn(u, m):
+    """The elliptic function dn of Jacobi."""
+    return jacobi_functions(u, m)[2]
 
 "#
         }

@@ -78,6 +78,9 @@ fn function(function: Function) -> &'static str {
         Function::BesselI1 => "bessel_i1",
         Function::Gamma => "gamma_function",
         Function::EllipticK => "elliptic_k",
+        Function::JacobiSn => "jacobi_sn",
+        Function::JacobiCn => "jacobi_cn",
+        Function::JacobiDn => "jacobi_dn",
     }
 }
 
@@ -223,6 +226,51 @@ fn elliptic_k(m: f64) -> f64 {
         (a, b) = ((a + b) / 2.0, (a * b).sqrt());
     }
     PI / (a + b)
+}
+"
+        }
+        Function::JacobiSn => {
+            "/// The elliptic functions sn, cn and dn of Jacobi, m = k^2 < 1, by the arithmetic-geometric mean.
+fn jacobi_functions(u: f64, m: f64) -> [f64; 3] {
+    if m.is_nan() || m >= 1.0 {
+        return [f64::NAN; 3];
+    }
+    if m < 0.0 {
+        let scale = (1.0 - m).sqrt();
+        let [s, c, d] = jacobi_functions(u * scale, -m / (1.0 - m));
+        return [s / (d * scale), c / d, 1.0 / d];
+    }
+    let (mut a, mut b) = (1.0, (1.0 - m).sqrt());
+    let mut ratios = [0.0; 8];
+    for ratio in &mut ratios {
+        *ratio = (a - b) / (a + b);
+        (a, b) = ((a + b) / 2.0, (a * b).sqrt());
+    }
+    let mut phi: f64 = 256.0 * a * u;
+    for ratio in ratios.iter().rev() {
+        phi = (phi + (ratio * phi.sin()).asin()) / 2.0;
+    }
+    let (s, c) = phi.sin_cos();
+    [s, c, (c * c + (1.0 - m) * s * s).sqrt()]
+}
+
+/// The elliptic function sn of Jacobi.
+fn jacobi_sn(u: f64, m: f64) -> f64 {
+    jacobi_functions(u, m)[0]
+}
+"
+        }
+        Function::JacobiCn => {
+            "/// The elliptic function cn of Jacobi.
+fn jacobi_cn(u: f64, m: f64) -> f64 {
+    jacobi_functions(u, m)[1]
+}
+"
+        }
+        Function::JacobiDn => {
+            "/// The elliptic function dn of Jacobi.
+fn jacobi_dn(u: f64, m: f64) -> f64 {
+    jacobi_functions(u, m)[2]
 }
 "
         }

@@ -70,7 +70,15 @@ fn functions(program: &Program) -> BTreeSet<Function> {
         Node::Function(function, _) => Some(*function),
         _ => None,
     };
-    nodes.filter_map(function).collect()
+    let mut functions: BTreeSet<Function> = nodes.filter_map(function).collect();
+    // What all three are computed by stands with the first of them.
+    if [Function::JacobiCn, Function::JacobiDn]
+        .iter()
+        .any(|function| functions.contains(function))
+    {
+        functions.insert(Function::JacobiSn);
+    }
+    functions
 }
 
 /// The name of every variable: its own, with underscores where that means something else in the language.
@@ -87,6 +95,7 @@ fn names(program: &Program, syntax: &Syntax, functions: &BTreeSet<Function>) -> 
         .iter()
         .map(|function| (syntax.function)(*function))
         .chain(program.routines.iter().map(|routine| routine.name))
+        .chain(functions.contains(&Function::JacobiSn).then_some("jacobi_functions"))
         .collect();
     let mut names: BTreeMap<Symbol, String> = BTreeMap::new();
     for symbol in &symbols {

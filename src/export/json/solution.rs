@@ -66,6 +66,11 @@ pub struct SolutionDocument {
     pub system: Option<System>,
     /// The motion x(t), the equilibrium included: add nothing to it.
     pub displacement: Displacement,
+    /// The motion x(t) from rest at the amplitude as text, the equilibrium included, where it is known in closed form: an expression in
+    /// `t`, the amplitude, the parameters and the definitions. sn(u, m), cn(u, m) and dn(u, m) are the elliptic functions of Jacobi of
+    /// the parameter m = k^2, not of the modulus k. Left out for any other.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub closed_motion: Option<String>,
     /// The limit cycle of a self-excited equation, whose amplitude the equation determines; null for any other.
     pub limit_cycle: Option<LimitCycle>,
     /// The slow equations of amplitude and phase of a motion that is not periodic; null for any other.
@@ -393,6 +398,7 @@ pub fn solution(solution: &Solution, verification: Option<&verify::Verification>
             equations: system.equations.iter().map(ToString::to_string).collect(),
         }),
         displacement: displacement(&solution.displacement, solution),
+        closed_motion: solution.closed_motion.as_ref().map(ToString::to_string),
         limit_cycle: solution.limit_cycle.as_ref().map(|cycle| limit_cycle(cycle, solution)),
         modulation: solution.modulation.as_ref().map(|slow| modulation(slow, solution)),
         response: solution
@@ -550,6 +556,10 @@ impl SolutionDocument {
             equilibrium: self.equilibrium.expression("equilibrium")?,
             law: self.law()?,
             displacement: self.displacement.read()?,
+            closed_motion: match &self.closed_motion {
+                Some(text) => Some(expression(text, "closed_motion")?),
+                None => None,
+            },
             limit_cycle: self.limit_cycle.as_ref().map(LimitCycle::read).transpose()?,
             modulation: self.modulation.as_ref().map(Modulation::read).transpose()?,
             response: self.response.as_ref().map(Response::read).transpose()?,

@@ -213,6 +213,9 @@ fn call(function: Function, arguments: &[Expr]) -> Vec<Piece> {
         Function::BesselI1 => "\\mathrm{I}_{1}",
         Function::Gamma => "\\Gamma",
         Function::EllipticK => "\\mathrm{K}",
+        Function::JacobiSn => "\\operatorname{sn}",
+        Function::JacobiCn => "\\operatorname{cn}",
+        Function::JacobiDn => "\\operatorname{dn}",
     };
     let [open, close] = match function {
         Function::Absolute => ["\\left|", "\\right|"],

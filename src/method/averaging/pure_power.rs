@@ -339,6 +339,7 @@ pub(super) fn solve(
         modulation: Some(modulation),
         response: None,
         numerical: true,
+        closed_motion: None,
         convergence: None,
         validity,
         steps: vec![],

@@ -37,6 +37,7 @@ pub(super) fn solution(oscillator: &Oscillator, scaling: &Scaling, found: Found)
         modulation: Some(found.modulation),
         response: None,
         numerical: false,
+        closed_motion: None,
         convergence: None,
         validity: found.validity,
         steps: vec![],

@@ -72,6 +72,24 @@ pub enum PeriodError {
         /// How far the search went.
         searched: f64,
     },
+    /// A speed that grows faster than the force at rest could make it grow.
+    #[error(
+        "no periodic motion: released at rest from x = {start}, the motion runs away: its speed grows beyond all bounds by t = {time}"
+    )]
+    RunsAway {
+        /// The release point.
+        start: f64,
+        /// When.
+        time: f64,
+    },
+    /// Released farther out than motions come back from.
+    #[error("{error}; motions are {range}")]
+    OutsideWell {
+        /// What becomes of this one.
+        error: Box<PeriodError>,
+        /// Where they are periodic, in words.
+        range: String,
+    },
     /// On the separatrix, to the digits of the numbers.
     #[error(
         "no periodic motion: released at rest from x = {start}, it is on the separatrix of the unstable equilibrium x = {place}, and \
@@ -149,7 +167,10 @@ impl PeriodError {
                 *start += origin;
                 *other += origin;
             }
-            Self::Pole { place } | Self::Overflow { place, .. } => *place += origin,
+            Self::RunsAway { start: place, .. } | Self::Pole { place } | Self::Overflow { place, .. } => {
+                *place += origin
+            }
+            Self::OutsideWell { error, .. } => **error = error.as_ref().clone().moved(origin),
             Self::Waves | Self::NoReturn(_) | Self::Quadrature(_) | Self::Root(_) | Self::Integration(_) => {}
         }
         self

@@ -327,6 +327,37 @@ fn a_root_goes_through_a_removable_zero_of_its_denominator() {
     assert!(reach > 40.0, "{words}");
 }
 
+/// omega0 = sqrt(2) stays out of the expansion: with time and force halved, `omega^2` is half of it, term by term.
+#[test]
+fn an_irrational_linear_frequency_is_no_letter_of_the_expansion() {
+    for (force, halved) in [
+        ("1 - 1/(1 + x)^2", "(1 - 1/(1 + x)^2)/2"),
+        ("2*x + x^2 + x^3", "x + x^2/2 + x^3/2"),
+        ("2*x + x'^2*x + x^3", "x + x'^2*x + x^3/2"),
+    ] {
+        let [own, other] = [force, halved].map(|force| {
+            let equation = format!("x'' + {force} = 0");
+            let options = Options {
+                order: Some(8),
+                ..Options::default()
+            };
+            solve(&Oscillator::parse(&equation).expect("an equation"), &options).expect("a series")
+        });
+        let omega0 = Symbol::new("omega0");
+        for step in &own.steps {
+            let coefficients = [&step.resonance, &step.correction];
+            assert!(
+                coefficients.iter().all(|own| !own.symbols().contains(&omega0)),
+                "{force}: {step:?}"
+            );
+        }
+        let twice = |number: &Rational| number * ratio(2, 1);
+        let law = |solution: &Solution| solution.law.frequency_squared().cloned().expect("a series");
+        assert_eq!(law(&own), law(&other).map(twice), "{force}");
+        assert_eq!(own.displacement, other.displacement, "{force}");
+    }
+}
+
 /// omega of Duffing's equation at eps A^2 = s is sqrt(1 + s) agm(1, sqrt(1 - s/(2 (1 + s)))).
 #[test]
 fn a_quotient_of_high_degree_is_the_elliptic_integral() {

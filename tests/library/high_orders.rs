@@ -358,6 +358,52 @@ fn an_irrational_linear_frequency_is_no_letter_of_the_expansion() {
     }
 }
 
+/// About an equilibrium that is no fraction every number is rounded, to fifteen digits, also in closed forms and what they are made of.
+#[test]
+fn rounded_closed_forms_are_written_with_fifteen_digits() {
+    let longest = |text: &str| {
+        let numbers = text.split(|letter: char| !letter.is_ascii_digit() && letter != '.');
+        let digits = numbers.map(|number| number.trim_start_matches(['0', '.']).replace('.', ""));
+        digits
+            .map(|digits| digits.trim_end_matches('0').len())
+            .max()
+            .unwrap_or(0)
+    };
+    for equation in [
+        "x'' + x^3 - cos(x) = 0",
+        "x'' + exp(x) - 2 = 0",
+        "x'' + x^3 - x - 1 = 0",
+    ] {
+        let oscillator = Oscillator::parse(equation).expect("an equation");
+        let by = |method, degrees, order| Options {
+            method: Some(method),
+            degrees,
+            order,
+            ..Options::default()
+        };
+        let series = solve(&oscillator, &by(Method::LindstedtPoincare, None, Some(10))).expect("a series");
+        for options in [
+            by(Method::Pade, Some(Degrees::Quotient(2, 2)), None),
+            by(Method::Pade, Some(Degrees::Quotient(4, 4)), None),
+            by(Method::HermitePade, Some(Degrees::Quadratic(2, 2, 2)), None),
+            by(Method::HomotopyPerturbation, None, None),
+        ] {
+            let solution = solve(&oscillator, &options).expect("an answer");
+            let words = text::solution(&solution, None, 0.01);
+            assert!(longest(&words) <= 15, "{equation}: {words}");
+            let numbers = [("A".into(), 0.01)].into();
+            let squared = |solution: &Solution| {
+                evaluate(&oscillator, solution, &numbers)
+                    .unwrap_or_else(|error| panic!("{equation}: {error}"))
+                    .frequency_squared
+            };
+            let off = squared(&solution) / squared(&series) - 1.0;
+            let allowed = if solution.degrees.is_some() { 1e-9 } else { 1e-3 };
+            assert!(off.abs() < allowed, "{equation}: {off} {words}");
+        }
+    }
+}
+
 /// omega of Duffing's equation at eps A^2 = s is sqrt(1 + s) agm(1, sqrt(1 - s/(2 (1 + s)))).
 #[test]
 fn a_quotient_of_high_degree_is_the_elliptic_integral() {

@@ -183,6 +183,57 @@ fn fixed(value: &Rational, decimals: usize) -> String {
     format!("{sign}{whole}{point}{fraction}")
 }
 
+/// The decimal that a fraction is, where it ends and its text is shorter than that of a long fraction: `1e-300`, `3.00853856091339`;
+/// `None` for short fractions and all others.
+pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
+    /// The longest fraction that is written as one.
+    const SHORT: usize = 12;
+    /// Whole numbers are written out up to here.
+    const WRITTEN_OUT: usize = 21;
+    /// What is longer is no number of anybody's equation.
+    const LONGEST_BITS: u64 = 4_000;
+    let bits = [value.numer(), value.denom()].map(Integer::bits);
+    if bits.iter().sum::<u64>() < 36 || bits.iter().any(|bits| *bits > LONGEST_BITS) {
+        return None;
+    }
+    let ten = Integer::from(10);
+    let has_factor = |number: &Integer, factor: &Integer| (number % factor).is_zero();
+    // m/10^k, where 2^a 5^b with the larger of a and b for k is the denominator.
+    let mut rest = value.denom().clone();
+    let mut decimals: i32 = 0;
+    for factor in [2, 5].map(Integer::from) {
+        let mut count = 0;
+        while has_factor(&rest, &factor) {
+            rest = rest / &factor;
+            count += 1;
+        }
+        decimals = decimals.max(count);
+    }
+    if rest != Integer::from(1) {
+        return None;
+    }
+    let mut mantissa = (value.abs() * Pow::pow(Rational::from_integer(ten.clone()), decimals)).to_integer();
+    while decimals <= 0 && has_factor(&mantissa, &ten) && !mantissa.is_zero() {
+        mantissa = mantissa / &ten;
+        decimals -= 1;
+    }
+    let digits = mantissa.to_string();
+    let exponent = digits.len() as i32 - 1 - decimals;
+    let with_point = |digits: &str, whole: usize| match digits.split_at(whole) {
+        (whole, "") => whole.to_owned(),
+        (whole, fraction) => format!("{whole}.{fraction}"),
+    };
+    let text = match exponent {
+        -4..0 => format!("0.{}{digits}", "0".repeat(exponent.unsigned_abs() as usize - 1)),
+        0.. if decimals >= 0 && (exponent as usize) < WRITTEN_OUT => with_point(&digits, exponent as usize + 1),
+        _ => format!("{}e{exponent}", with_point(&digits, 1)),
+    };
+    let fraction = value.abs().to_string().len();
+    let longest = if value.is_integer() { WRITTEN_OUT } else { SHORT };
+    let sign = if value.is_negative() { "-" } else { "" };
+    (fraction > longest && text.len() < fraction).then(|| format!("{sign}{text}"))
+}
+
 /// A whole number of so many digits, and the power of ten that makes it the fraction, rounded.
 fn scientific(value: &Rational, digits: usize) -> (Integer, i32) {
     if value.is_zero() {

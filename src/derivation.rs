@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
-use crate::exact::{POLYNOMIALS, Polynomial, Polynomials};
+use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{Expr, Inside};
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
@@ -140,6 +140,15 @@ impl Line {
         Self::equal([left.into(), right.into()])
     }
 
+    /// The line with every number of its formulas changed; an expression that has no value then stays as it is.
+    #[must_use]
+    pub fn with_numbers(&self, change: &dyn Fn(&Rational) -> Rational) -> Self {
+        Self {
+            words: self.words.clone(),
+            equal: self.equal.iter().map(|formula| formula.with_numbers(change)).collect(),
+        }
+    }
+
     /// The same line with words in front of it.
     pub fn because(self, words: impl Into<String>) -> Self {
         Self {
@@ -147,9 +156,7 @@ impl Line {
             ..self
         }
     }
-}
 
-impl Line {
     /// The names in its formulas.
     pub fn symbols(&self) -> BTreeSet<Symbol> {
         self.equal.iter().flat_map(Formula::symbols).collect()
@@ -157,6 +164,40 @@ impl Line {
 }
 
 impl Formula {
+    fn with_numbers(&self, change: &dyn Fn(&Rational) -> Rational) -> Self {
+        let changed = |expression: &Expr| expression.with_numbers(change).unwrap_or_else(|_| expression.clone());
+        match self {
+            Self::Expression(expression) => Self::Expression(changed(expression)),
+            Self::Waves(series) => Self::Waves(series.map(POLYNOMIALS, |coefficient, _| coefficient.map(change))),
+            Self::Oscillator { of, square } => Self::Oscillator {
+                of: *of,
+                square: changed(square),
+            },
+            Self::Integral {
+                factor,
+                from,
+                to,
+                integrand,
+                variable,
+            } => Self::Integral {
+                factor: changed(factor),
+                from: changed(from),
+                to: changed(to),
+                integrand: Box::new(integrand.with_numbers(change)),
+                variable: *variable,
+            },
+            Self::OverRoot(numerator, inside) => {
+                Self::OverRoot(changed(numerator), Box::new(inside.with_numbers(change)))
+            }
+            Self::Slope { factor, of, by } => Self::Slope {
+                factor: changed(factor),
+                of: *of,
+                by: *by,
+            },
+            Self::AtZero { .. } => self.clone(),
+        }
+    }
+
     /// The names in it, those that are integrated over included.
     pub fn symbols(&self) -> BTreeSet<Symbol> {
         match self {

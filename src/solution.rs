@@ -113,9 +113,11 @@ pub fn constant_in_words(value: &Expr) -> String {
     }
 }
 
+/// A number with more signs than this must be a rounded one.
+const MANY: usize = 16;
+
 /// The number that a constant is, where it is a fraction of so many digits that it must be a rounded number.
 pub fn long_fraction(value: &Expr) -> Option<&Rational> {
-    const MANY: usize = 16;
     value
         .as_number()
         .filter(|number| !number.is_integer() && number.to_string().len() > MANY)
@@ -336,7 +338,22 @@ impl Solution {
     pub fn round_coefficients(&mut self) {
         let round = |number: &Rational| rounded_fraction(number, 15);
         let rounded = |polynomial: &Polynomial| polynomial.map(round);
-        self.law = self.law.map(rounded);
+        // Of expressions the long numbers alone: an exponent of 1/3 is no rounded number.
+        let round_long = |number: &Rational| match number.to_string().len() > MANY {
+            true => round(number),
+            false => number.clone(),
+        };
+        self.law = self.law.map(rounded).with_numbers(&round_long);
+        for definition in &mut self.definitions {
+            if let Ok(meaning) = definition.meaning.with_numbers(&round_long) {
+                definition.meaning = meaning;
+            }
+        }
+        self.derivation = self
+            .derivation
+            .iter()
+            .map(|line| line.with_numbers(&round_long))
+            .collect();
         if let Some(cycle) = &mut self.limit_cycle {
             cycle.amplitude = rounded(&cycle.amplitude);
         }
@@ -545,6 +562,17 @@ impl Solution {
         };
         let (value, size) = self.evaluate_with_size(law, value_of).ok()?;
         Some(power * self.precision() * size / value.abs())
+    }
+
+    /// How far rounding of the coefficients may move the motion, over the amplitude: its terms cancel far outside of its reach. `None`
+    /// where a value is missing, or the amplitude is zero.
+    pub fn rounding_of_motion_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
+        let amplitude = value_of(self.amplitude.symbol()).filter(|amplitude| *amplitude != 0.0)?;
+        let harmonics = self.displacement.harmonics();
+        let polynomials = harmonics.iter().flat_map(|(_, cosine, sine)| [cosine, sine]);
+        let size = |polynomial: &Polynomial| Some(self.evaluate_with_size(polynomial, value_of).ok()?.1);
+        let sizes: Option<Vec<f64>> = polynomials.map(size).collect();
+        Some(self.precision() * sizes?.iter().sum::<f64>() / amplitude.abs())
     }
 
     /// The harmonics that a balance solves for, each with the name of its coefficient; the place about which the motion swings is none.

@@ -240,6 +240,18 @@ impl Expr {
         }
     }
 
+    /// The expression with every number in it changed, exponents included.
+    ///
+    /// # Errors
+    /// Those of [`Expr::with_children`].
+    pub fn with_numbers(&self, change: &dyn Fn(&Rational) -> Rational) -> Result<Self, ExprError> {
+        self.fold(|expr, children: &[Self]| match expr.node() {
+            Node::Number(number) => Ok(Self::number(change(number))),
+            Node::Product(coefficient, _) => Ok(normal::scaled_product(change(coefficient), children)),
+            _ => expr.with_children(children),
+        })
+    }
+
     /// The node itself, to match on.
     pub fn node(&self) -> &Node {
         &self.0.node

@@ -2,7 +2,7 @@
 //! may be longer than a text may hold.
 //!
 //! A product prints as a fraction: numerator over denominator, `8*eps*A/(3*pi)`; [`Expr::fraction`] is that split, for
-//! every other notation to share. Powers with a negative number as exponent stand in the denominator; the power 1/2 is
+//! every other notation to share. A long number that is a decimal prints as one, `1e-300`. Powers with a negative number as exponent stand in the denominator; the power 1/2 is
 //! written `sqrt(k)`.
 
 use std::fmt::{self, Write};
@@ -10,7 +10,8 @@ use std::fmt::{self, Write};
 use num_traits::{One, Signed, Zero};
 
 use super::{Expr, Function, Node};
-use crate::exact::rational::{Integer, Rational, ratio};
+use crate::decimal::decimal_of_long_fraction;
+use crate::exact::rational::{Rational, ratio};
 
 /// A term as sign, numerator and denominator, for printing.
 pub struct Fraction {
@@ -26,12 +27,17 @@ impl Expr {
     /// Sign, numerator and denominator. A sum is its own numerator, with its sign inside.
     pub fn fraction(&self) -> Fraction {
         let (coefficient, factors) = self.factors();
-        let whole = |value: &Integer| {
-            let value = value.abs();
-            (!value.is_one()).then(|| Expr::number(Rational::from_integer(value)))
+        let number = |value: Rational| (!value.is_one()).then(|| Expr::number(value));
+        // A decimal stands above the line.
+        let (above, below) = match decimal_of_long_fraction(&coefficient) {
+            Some(_) => (coefficient.abs(), Rational::one()),
+            None => {
+                let (above, below) = coefficient.abs().into_raw();
+                (Rational::from_integer(above), Rational::from_integer(below))
+            }
         };
-        let mut numerator: Vec<Expr> = whole(coefficient.numer()).into_iter().collect();
-        let mut denominator: Vec<Expr> = whole(coefficient.denom()).into_iter().collect();
+        let mut numerator: Vec<Expr> = number(above).into_iter().collect();
+        let mut denominator: Vec<Expr> = number(below).into_iter().collect();
         for factor in factors {
             match factor.node() {
                 Node::Power(base, exponent) => match exponent.as_number() {
@@ -128,7 +134,7 @@ fn in_parentheses(expr: &Expr, place: Place) -> bool {
         Node::Symbol(_) | Node::Pi | Node::Function(..) => false,
         Node::Number(value) => match place {
             Place::Free | Place::Inside | Place::Unsigned => false,
-            Place::Factor => !value.is_integer(),
+            Place::Factor => !value.is_integer() && decimal_of_long_fraction(value).is_none(),
             Place::Base | Place::Exponent => !value.is_integer() || value.is_negative(),
         },
         Node::Sum(_) => !matches!(place, Place::Free | Place::Inside),
@@ -148,8 +154,8 @@ fn write_node(expr: &Expr, place: Place, out: &mut fmt::Formatter<'_>, open: &mu
     match expr.node() {
         Node::Pi => out.write_str("pi"),
         Node::Symbol(symbol) => out.write_str(symbol.name()),
-        Node::Number(value) if place == Place::Unsigned => write!(out, "{}", value.abs()),
-        Node::Number(value) => write!(out, "{value}"),
+        Node::Number(value) if place == Place::Unsigned => write_number(&value.abs(), out),
+        Node::Number(value) => write_number(value, out),
         Node::Sum(terms) => {
             let terms: Vec<&Expr> = match place {
                 Place::Inside => expr.terms_inside().collect(),
@@ -200,6 +206,14 @@ fn write_node(expr: &Expr, place: Place, out: &mut fmt::Formatter<'_>, open: &mu
             push_fraction(&fraction, open);
             Ok(())
         }
+    }
+}
+
+/// A fraction, or the decimal that a long one is.
+fn write_number(value: &Rational, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+    match decimal_of_long_fraction(value) {
+        Some(decimal) => out.write_str(&decimal),
+        None => write!(out, "{value}"),
     }
 }
 
@@ -329,6 +343,30 @@ mod tests {
             let expr = parse_expression(text).unwrap();
             assert_eq!(expr.to_string(), expected);
             assert_eq!(parse_expression(expected).unwrap(), expr, "{text}");
+        }
+    }
+
+    #[test]
+    fn long_fractions_that_end_are_decimals() {
+        for (text, printed) in [
+            ("1e-300", "1e-300"),
+            ("-1.5e-10", "-1.5e-10"),
+            ("3.00853856091339", "3.00853856091339"),
+            ("0.00012345678901", "0.00012345678901"),
+            ("1234567890.12345", "1234567890.12345"),
+            ("1e300", "1e300"),
+            ("-12e200", "-1.2e201"),
+            ("123456789012345678901", "123456789012345678901"),
+            // Short ones, those that do not end, and those that are longer as decimals.
+            ("0.323", "323/1000"),
+            ("1e-6", "1/1000000"),
+            ("1/30000000000000", "1/30000000000000"),
+            ("549183/2097152", "549183/2097152"),
+            ("7/4503599627370496", "7/4503599627370496"),
+        ] {
+            let number = parse_expression(text).unwrap();
+            assert_eq!(number.to_string(), printed);
+            assert_eq!(parse_expression(printed).unwrap(), number, "{text}");
         }
     }
 

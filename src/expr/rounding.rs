@@ -86,7 +86,13 @@ fn node(expr: &Expr, children: &[Rounded], value_of: &dyn Fn(Symbol) -> Option<R
             } else {
                 power.1
             };
-            moved(&|shift| raised(base.0 + shift * base.1, power.0 + shift * slack))
+            // A base that rounding alone takes below zero is not negative where the power has a value.
+            let is_root = number.is_some_and(|number| number.is_positive() && !number.denom().is_odd());
+            let shifted = |shift: f64| match base.0 + shift * base.1 {
+                below if below < 0.0 && is_root && base.0 >= 0.0 => 0.0,
+                other => other,
+            };
+            moved(&|shift| raised(shifted(shift), power.0 + shift * slack))
         }
         (Node::Function(function, _), [one]) => {
             moved(&|shift| function.value(one.0 + shift * one.1, one.0 + shift * one.1))

@@ -14,6 +14,14 @@
 //! so closely that D has two zeros all but in one place, they cross: the difference of the roots passes through zero like `s - m`, and
 //! S is the other sign from there on. All zeros of D and of R on the way are [counted for certain](crate::exact::zero_clusters).
 //!
+//! Both forms of the root are quotients `N_i/M_i`. Where R vanishes and it is the other root that is infinite, the first is 0/0; so is
+//! the second where P vanishes and it is the other root that is zero. The root goes on through either: where each of the forms has such a
+//! place on the way, their mediant is the formula, which has none,
+//!
+//! ```text
+//! f = (M_1 N_1 + M_2 N_2)/(M_1^2 + M_2^2) = 2 (S sqrt(D) (R - P) - Q (P + R))/(4 R^2 + (Q + S sqrt(D))^2)
+//! ```
+//!
 //! ```
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::{Degrees, Method}};
 //! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
@@ -137,6 +145,8 @@ struct Followed {
     crossings: Vec<Rational>,
     /// Where it ends, and whether D says so itself everywhere beyond.
     ends: Vec<(Rational, RootEnd, bool)>,
+    /// Whether the forms of the root over R and over `Q + S sqrt(D)` are 0/0 somewhere on the way.
+    indeterminate: [bool; 2],
 }
 
 impl Quadratic {
@@ -194,6 +204,7 @@ impl Quadratic {
         let mut followed = Followed {
             crossings: vec![],
             ends: vec![],
+            indeterminate: [2, 0].map(|list: usize| self.lists[list][0].is_zero()),
         };
         for side in sides {
             self.follow(*side, &mut followed)?;
@@ -216,54 +227,60 @@ impl Quadratic {
             };
             list.iter().map(&mut turned).collect()
         };
-        let [_, q, r] = &self.lists;
-        let (q, r) = (floats(q), floats(r));
-        let is_zero = r.iter().all(BigFloat::is_zero);
-        // What is common to all coefficients of R vanishes at zero alone.
-        let first = r.iter().position(|value| !value.is_zero()).unwrap_or(0);
+        let [p, q, r] = self.lists.each_ref().map(|list| floats(list));
+        // What is common to all coefficients of P or of R vanishes at zero alone.
+        let zeros = |list: &[BigFloat]| match list.iter().position(|value| !value.is_zero()) {
+            None => Some(vec![]),
+            Some(first) => clusters(&list[first..]),
+        };
         let meetings = clusters(&floats(&self.discriminant()))?;
-        let zeros = if is_zero { vec![] } else { clusters(&r[first..])? };
+        let (zeros_of_p, zeros_of_r) = (zeros(&p), zeros(&r)?);
+        // The zeros of P only tell which form is written.
+        followed.indeterminate[1] |= zeros_of_p.is_none();
+        let zeros_of_p = zeros_of_p.unwrap_or_default();
+        let (mut zeros_of_p, mut zeros_of_r) = (zeros_of_p.iter().peekable(), zeros_of_r.iter().peekable());
         let mut is_upper = true;
         let place = |cluster: &Cluster| Rational::from_integer(side.into()) * cluster.place.to_fraction();
-        let mut poles = zeros.iter().peekable();
-        for (index, meeting) in meetings.iter().enumerate() {
-            let before = |pole: &&&Cluster| pole.place < meeting.place;
-            if let Some(pole) = first_pole(std::iter::from_fn(|| poles.next_if(|pole| before(&pole))), &q, is_upper) {
+        // Where Q has the sign of the root of D, R vanishes with `S sqrt(D) - Q`; elsewhere P does with `Q + S sqrt(D)`.
+        let same_sign = |zero: &&Cluster, is_upper: bool| {
+            let nothing = BigFloat::zero(bits);
+            let start = nothing.clone();
+            let value = q.iter().rev().fold(start, |sum, number| &(&sum * &zero.place) + number);
+            (value > nothing) == is_upper
+        };
+        for meeting in meetings.iter().map(Some).chain([None]) {
+            let before = |zero: &&Cluster| meeting.is_none_or(|meeting| zero.place < meeting.place);
+            let mut end: Option<&Cluster> = None;
+            while let Some(zero) = zeros_of_r.next_if(|zero| end.is_none() && before(zero)) {
+                match same_sign(&zero, is_upper) {
+                    true => followed.indeterminate[0] = true,
+                    false => end = Some(zero),
+                }
+            }
+            while let Some(zero) = zeros_of_p.next_if(|zero| end.map_or(before(zero), |end| zero.place < end.place)) {
+                followed.indeterminate[1] |= !same_sign(&zero, is_upper);
+            }
+            if let Some(pole) = end {
                 followed.ends.push((place(pole), RootEnd::Infinite, false));
                 return Some(());
             }
+            let Some(meeting) = meeting else { break };
             if meeting.count == 2 && meeting.distance.abs() <= CROSSES {
                 is_upper = !is_upper;
                 followed.crossings.push(place(meeting));
                 continue;
             }
-            // D is negative from here on, if nothing follows.
-            let says_so = meeting.count == 1 && index + 1 == meetings.len();
             let middle = place(meeting);
             let distance = crate::exact::from_f64(meeting.distance.abs())?;
+            // D is negative from here on, if nothing follows.
+            let says_so = meeting.count == 1 && meetings.last().is_some_and(|last| std::ptr::eq(last, meeting));
             followed
                 .ends
                 .push((&middle - &middle * distance, RootEnd::Meets, says_so));
             return Some(());
         }
-        if let Some(pole) = first_pole(poles, &q, is_upper) {
-            followed.ends.push((place(pole), RootEnd::Infinite, false));
-        }
         Some(())
     }
-}
-
-/// The first of these zeros of R where the root is infinite: the other one is, where Q has the sign of the root of D.
-fn first_pole<'a>(zeros: impl Iterator<Item = &'a Cluster>, q: &[BigFloat], is_upper: bool) -> Option<&'a Cluster> {
-    let mut zeros = zeros;
-    zeros.find(|zero| {
-        let nothing = BigFloat::zero(zero.place.bits());
-        let value = q
-            .iter()
-            .rev()
-            .fold(nothing.clone(), |sum, number| &(&sum * &zero.place) + number);
-        (value > nothing) != is_upper
-    })
 }
 
 /// The names with which it is written.
@@ -290,16 +307,27 @@ impl Words {
     fn law(&self, quadratic: &Quadratic, root: &Followed) -> Result<(Expr, Vec<Definition>), ExprError> {
         let [p, q, r, s] = self.letters.map(Expr::from);
         let two = Expr::from(2);
-        let square = (&(&q * &q) - &(&Expr::from(4) * &(&p * &r))).sqrt()?;
+        let discriminant = &(&q * &q) - &(&Expr::from(4) * &(&p * &r));
+        let square = match root.crossings.is_empty() {
+            true => discriminant,
+            // Between two real zeros next to each other, and by rounding between any, D is negative: the roots cross there.
+            false => Expr::function(Function::Maximum, vec![Expr::zero(), discriminant])?,
+        };
+        let square = square.sqrt()?;
         let sign = self.sign(root)?;
         let upper = match sign.is_one() {
             true => square,
             false => &s * &square,
         };
-        // Of the two forms the one in which nothing cancels at rest.
-        let value = match !quadratic.lists[1][0].is_positive() {
-            true => Expr::divide(&(&upper - &q), &(&two * &r))?,
-            false => Expr::divide(&-&(&two * &p), &(&q + &upper))?,
+        let value = match (quadratic.lists[1][0].is_positive(), root.indeterminate) {
+            // Of the two forms the one in which nothing cancels at rest, if both have a value all the way.
+            (false, [false, _]) | (true, [false, true]) => Expr::divide(&(&upper - &q), &(&two * &r))?,
+            (true, [_, false]) | (false, [true, false]) => Expr::divide(&-&(&two * &p), &(&q + &upper))?,
+            (_, [true, true]) => {
+                let above = &(&upper * &(&r - &p)) - &(&q * &(&p + &r));
+                let [over_r, over_sum] = [&two * &r, &q + &upper].map(|divisor| &divisor * &divisor);
+                Expr::divide(&(&two * &above), &(&over_r + &over_sum))?
+            }
         };
         let definition = |(symbol, meaning): (Symbol, Expr)| Definition { symbol, meaning };
         let polynomials = self.letters.into_iter().zip(self.polynomials(quadratic));
@@ -338,7 +366,9 @@ impl Words {
         for place in &root.crossings {
             sign = &sign * &before(&short(place))?;
         }
-        for (place, _, _) in root.ends.iter().filter(|(_, _, says_so)| !says_so) {
+        // Where D is kept from being negative it says nothing itself.
+        let crosses = !root.crossings.is_empty();
+        for (place, _, _) in root.ends.iter().filter(|(_, _, says_so)| crosses || !says_so) {
             sign = &sign * &before(&short(place))?.sqrt()?;
         }
         Ok(sign)

@@ -344,7 +344,8 @@ pub(super) struct Units {
 }
 
 impl Units {
-    /// The square takes the place of even powers only where the equation for the amplitude has sums without it.
+    /// The square takes the place of even powers where it is a number, so that a letter such as `omega0 = sqrt(2)` stays out of the
+    /// expansion, and where the equation for the amplitude has sums without it.
     pub fn new(force: &PerturbedForce, frequency: Polynomial) -> Self {
         let plain = Self {
             frequency,
@@ -360,7 +361,8 @@ impl Units {
                 .iter()
                 .any(|coefficient| coefficient.terms().len() > 1)
         };
-        match !named && force.linear.single_term().is_some() && sums() {
+        let is_number = force.linear.as_number().is_some() && plain.frequency.as_number().is_none();
+        match is_number || (!named && force.linear.single_term().is_some() && sums()) {
             true => Self {
                 square: Some(force.linear.clone()),
                 ..plain

@@ -107,7 +107,10 @@ pub(super) fn law_blocks<'a>(solution: &'a Solution, law: Shown<'a>) -> Vec<Bloc
 /// Binary digits of a number that is read as it is: some six hundred decimal ones.
 const LONGEST: u64 = 2000;
 
-/// A quotient of polynomials whose coefficients are too long for eyes, in decimals; `None` for everything else.
+/// Digits of the coefficients of a closed form that are rounded themselves.
+const ROUNDED_DIGITS: usize = 15;
+
+/// A quotient of polynomials whose coefficients are rounded, or too long for eyes, in decimals; `None` for everything else.
 fn in_decimals<'a>(solution: &Solution, value: &Expr, left: &Expr) -> Option<Vec<Block<'a>>> {
     solution.degrees?;
     let fraction = value.fraction();
@@ -115,9 +118,12 @@ fn in_decimals<'a>(solution: &Solution, value: &Expr, left: &Expr) -> Option<Vec
     let above = polynomial(fraction.numerator)?;
     let below = polynomial(fraction.denominator)?;
     let longest = longest([&above, &below])?;
-    if longest < LONGEST {
+    if longest < LONGEST && !solution.numerical {
         return None;
     }
+    let digits = if solution.numerical { ROUNDED_DIGITS } else { 6 };
+    let rounded = |name, polynomial: &Polynomial| rounded(solution, name, polynomial, digits);
+    let remark = (!solution.numerical).then(|| rounded_to(longest));
     let first = below.coefficient(&Monomial::one());
     let sign = if fraction.negative {
         -Rational::one()
@@ -129,15 +135,15 @@ fn in_decimals<'a>(solution: &Solution, value: &Expr, left: &Expr) -> Option<Vec
     let quotient = Monomial::power_of(letters[0], 1).product(&Monomial::power_of(letters[1], -1));
     let quotient = Polynomial::term(quotient, Rational::one());
     (!first.is_zero()).then(|| {
-        vec![
-            Block::Law {
-                left: left.clone(),
-                right: Sum::new(&quotient, false, |monomial| solution.order_of(monomial)),
-            },
-            rounded(solution, letters[0], &over(&above, &sign)),
-            rounded(solution, letters[1], &over(&below, &Rational::one())),
-            rounded_to(longest),
-        ]
+        let law = Block::Law {
+            left: left.clone(),
+            right: Sum::new(&quotient, false, |monomial| solution.order_of(monomial)),
+        };
+        let letters = [
+            rounded(letters[0], &over(&above, &sign)),
+            rounded(letters[1], &over(&below, &Rational::one())),
+        ];
+        std::iter::once(law).chain(letters).chain(remark).collect()
     })
 }
 
@@ -148,10 +154,11 @@ fn longest<'a>(polynomials: impl IntoIterator<Item = &'a Polynomial>) -> Option<
 }
 
 /// A polynomial with long coefficients.
-fn rounded<'a>(solution: &Solution, name: Symbol, polynomial: &Polynomial) -> Block<'a> {
+fn rounded<'a>(solution: &Solution, name: Symbol, polynomial: &Polynomial, digits: usize) -> Block<'a> {
+    let sum = Sum::new(polynomial, true, |monomial| solution.order_of(monomial));
     Block::Law {
         left: Expr::from(name),
-        right: Sum::new(polynomial, true, |monomial| solution.order_of(monomial)),
+        right: sum.to_digits(digits),
     }
 }
 
@@ -173,7 +180,7 @@ fn definitions(solution: &Solution) -> Vec<Block<'_>> {
         blocks.push(match long.filter(|(bits, _)| *bits >= LONGEST) {
             Some((bits, polynomial)) => {
                 digits = digits.max(Some(bits));
-                rounded(solution, definition.symbol, &polynomial)
+                rounded(solution, definition.symbol, &polynomial, 6)
             }
             None => Block::Definition(definition),
         });

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt;
 
 use crate::derivation::Line;
-use crate::exact::Polynomial;
+use crate::exact::{Polynomial, Rational};
 use crate::expr::Expr;
 use crate::symbol::Symbol;
 
@@ -158,6 +158,32 @@ impl Law {
                 }),
             },
             other => other.clone(),
+        }
+    }
+
+    /// The law with every number of its closed forms, integrals and equations changed.
+    #[must_use]
+    pub fn with_numbers(self, change: &dyn Fn(&Rational) -> Rational) -> Self {
+        let changed = |value: &Expr| value.with_numbers(change).unwrap_or_else(|_| value.clone());
+        let closed = |form: ClosedForm| ClosedForm {
+            value: changed(&form.value),
+            ..form
+        };
+        match self {
+            Self::Closed(form) => Self::Closed(closed(form)),
+            Self::Relation {
+                relation,
+                root: Some(Root::Closed(form)),
+            } => Self::Relation {
+                relation,
+                root: Some(Root::Closed(closed(form))),
+            },
+            Self::Quadrature(lines) => Self::Quadrature(lines.iter().map(|line| line.with_numbers(change)).collect()),
+            Self::System(system) => Self::System(System {
+                equations: system.equations.iter().map(changed).collect(),
+                ..system
+            }),
+            other => other,
         }
     }
 

@@ -14,6 +14,7 @@ use crate::series::terms;
 pub struct Sum {
     terms: Vec<(Monomial, Rational)>,
     rounded: bool,
+    digits: usize,
 }
 
 impl Sum {
@@ -25,7 +26,14 @@ impl Sum {
                 .map(|(monomial, number)| (monomial.clone(), number.clone()))
                 .collect(),
             rounded,
+            digits: 6,
         }
+    }
+
+    /// The sum with so many digits of its rounded numbers.
+    #[must_use]
+    pub(crate) fn to_digits(self, digits: usize) -> Self {
+        Self { digits, ..self }
     }
 
     /// The terms and the numbers before them.
@@ -33,8 +41,8 @@ impl Sum {
         self.terms.iter().map(|(monomial, number)| (monomial, number))
     }
 
-    /// The sum of its terms, each written by `exact`; a rounded number by `decimal`, from its six digits and what it
-    /// multiplies, if anything.
+    /// The sum of its terms, each written by `exact`; a rounded number by `decimal`, from its six digits (or as
+    /// many as were asked for) and what it multiplies, if anything.
     pub fn written(
         &self,
         exact: impl Fn(&Polynomial) -> String,
@@ -46,7 +54,7 @@ impl Sum {
             }
             let rest = Polynomial::term(monomial.clone(), Rational::one());
             let rest = Some(&rest).filter(|_| !monomial.factors().is_empty());
-            decimal(&significant_fraction(number, 6), rest)
+            decimal(&significant_fraction(number, self.digits), rest)
         };
         terms::sum(self.terms().map(term))
     }

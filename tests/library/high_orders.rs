@@ -1,6 +1,7 @@
 //! What high orders buy: singularities of the frequency, and values far beyond them.
 
 use lindstedt::exact::{Integer, Rational, ratio, to_f64};
+use lindstedt::export::text;
 use lindstedt::method::numbers::evaluate;
 use lindstedt::series::singularity::Estimate;
 use lindstedt::solution::{Convergence, Degrees};
@@ -264,6 +265,142 @@ fn roots_of_quadratic_equations_hold_farther_than_quotients() {
         };
         let (found, other) = (error(&root), error(&quotient));
         assert!(found < least && found < other, "{mu}: {found} {other}");
+    }
+}
+
+/// omega^2 of Duffing's equation at eps A^2 = s: sqrt(1 + s) agm(1, sqrt(1 - s/(2 (1 + s)))), squared.
+fn elliptic(size: f64) -> f64 {
+    let (mut a, mut g) = (1.0, f64::sqrt(1.0 - size / (2.0 * (1.0 + size))));
+    for _ in 0..9 {
+        (a, g) = ((a + g) / 2.0, f64::sqrt(a * g));
+    }
+    (1.0 + size) * a * a
+}
+
+/// R of Duffing's [2/2/2] vanishes at eps A^2 = 4.16776... and P at -0.97...: there one form of the root is 0/0, and the root goes on, as
+/// far as it is right.
+#[test]
+fn a_root_goes_through_a_removable_zero_of_its_denominator() {
+    let oscillator = Oscillator::parse("x'' + x + eps*x^3 = 0").expect("an equation");
+    let options = Options {
+        method: Some(Method::HermitePade),
+        degrees: Some(Degrees::Quadratic(2, 2, 2)),
+        ..Options::default()
+    };
+    let root = solve(&oscillator, &options).expect("an approximant");
+    let zero = |a: f64, b: f64, c: f64| 2.0 * c / (-b + f64::sqrt(b * b - 4.0 * a * c));
+    let of_r = zero(6695.0, -1_052_879_520.0, 4_388_010_496.0);
+    let of_p = -zero(1_094_216_137.0, -3_462_316_704.0, 2_330_809_856.0);
+    assert!(
+        (of_r - 4.1678).abs() < 1e-3 && (of_p + 0.97).abs() < 0.01,
+        "{of_r} {of_p}"
+    );
+    for (size, error) in [
+        (of_p, 1e-2),
+        (of_p + 1e-9, 1e-2),
+        (4.0, 1e-5),
+        (of_r - 1e-9, 1e-5),
+        (of_r, 1e-5),
+        (of_r * (1.0 + f64::EPSILON), 1e-5),
+        (of_r + 1e-12, 1e-5),
+        (5.0, 1e-4),
+        // The two roots cross at 6.2447: the other one would be off by far more.
+        (6.2447, 1e-2),
+        (6.25, 1e-2),
+        (10.0, 1e-3),
+        (1000.0, 1e-2),
+    ] {
+        let numbers = [("A".into(), 1.0), ("eps".into(), size)].into();
+        let found = evaluate(&oscillator, &root, &numbers).unwrap_or_else(|error| panic!("{size}: {error}"));
+        let off = found.frequency_squared / elliptic(size) - 1.0;
+        assert!(off.abs() < error, "{size}: {off}");
+    }
+    let judged = judge(&oscillator, &root, &"eps = 1, A = 1".parse().expect("values"), 0.01).expect("a verdict");
+    let words = text::solution(&root, Some(&judged), 0.01);
+    let (_, reach) = words.split_once("within 1 % up to A = ").expect("a range");
+    let reach: f64 = reach
+        .split_whitespace()
+        .next()
+        .expect("a number")
+        .parse()
+        .expect("a number");
+    assert!(reach > 40.0, "{words}");
+}
+
+/// omega0 = sqrt(2) stays out of the expansion: with time and force halved, `omega^2` is half of it, term by term.
+#[test]
+fn an_irrational_linear_frequency_is_no_letter_of_the_expansion() {
+    for (force, halved) in [
+        ("1 - 1/(1 + x)^2", "(1 - 1/(1 + x)^2)/2"),
+        ("2*x + x^2 + x^3", "x + x^2/2 + x^3/2"),
+        ("2*x + x'^2*x + x^3", "x + x'^2*x + x^3/2"),
+    ] {
+        let [own, other] = [force, halved].map(|force| {
+            let equation = format!("x'' + {force} = 0");
+            let options = Options {
+                order: Some(8),
+                ..Options::default()
+            };
+            solve(&Oscillator::parse(&equation).expect("an equation"), &options).expect("a series")
+        });
+        let omega0 = Symbol::new("omega0");
+        for step in &own.steps {
+            let coefficients = [&step.resonance, &step.correction];
+            assert!(
+                coefficients.iter().all(|own| !own.symbols().contains(&omega0)),
+                "{force}: {step:?}"
+            );
+        }
+        let twice = |number: &Rational| number * ratio(2, 1);
+        let law = |solution: &Solution| solution.law.frequency_squared().cloned().expect("a series");
+        assert_eq!(law(&own), law(&other).map(twice), "{force}");
+        assert_eq!(own.displacement, other.displacement, "{force}");
+    }
+}
+
+/// About an equilibrium that is no fraction every number is rounded, to fifteen digits, also in closed forms and what they are made of.
+#[test]
+fn rounded_closed_forms_are_written_with_fifteen_digits() {
+    let longest = |text: &str| {
+        let numbers = text.split(|letter: char| !letter.is_ascii_digit() && letter != '.');
+        let digits = numbers.map(|number| number.trim_start_matches(['0', '.']).replace('.', ""));
+        digits
+            .map(|digits| digits.trim_end_matches('0').len())
+            .max()
+            .unwrap_or(0)
+    };
+    for equation in [
+        "x'' + x^3 - cos(x) = 0",
+        "x'' + exp(x) - 2 = 0",
+        "x'' + x^3 - x - 1 = 0",
+    ] {
+        let oscillator = Oscillator::parse(equation).expect("an equation");
+        let by = |method, degrees, order| Options {
+            method: Some(method),
+            degrees,
+            order,
+            ..Options::default()
+        };
+        let series = solve(&oscillator, &by(Method::LindstedtPoincare, None, Some(10))).expect("a series");
+        for options in [
+            by(Method::Pade, Some(Degrees::Quotient(2, 2)), None),
+            by(Method::Pade, Some(Degrees::Quotient(4, 4)), None),
+            by(Method::HermitePade, Some(Degrees::Quadratic(2, 2, 2)), None),
+            by(Method::HomotopyPerturbation, None, None),
+        ] {
+            let solution = solve(&oscillator, &options).expect("an answer");
+            let words = text::solution(&solution, None, 0.01);
+            assert!(longest(&words) <= 15, "{equation}: {words}");
+            let numbers = [("A".into(), 0.01)].into();
+            let squared = |solution: &Solution| {
+                evaluate(&oscillator, solution, &numbers)
+                    .unwrap_or_else(|error| panic!("{equation}: {error}"))
+                    .frequency_squared
+            };
+            let off = squared(&solution) / squared(&series) - 1.0;
+            let allowed = if solution.degrees.is_some() { 1e-9 } else { 1e-3 };
+            assert!(off.abs() < allowed, "{equation}: {off} {words}");
+        }
     }
 }
 

@@ -2,7 +2,8 @@
 
 use num_traits::{One, Signed};
 
-use crate::exact::Rational;
+use crate::decimal::decimal_of_long_fraction;
+use crate::exact::{Integer, Rational};
 use crate::expr::{Expr, Function, Node};
 use crate::symbol::{GREEK, Symbol};
 
@@ -110,17 +111,19 @@ fn term(term: &Expr, turn: bool) -> Vec<Piece> {
             _ => above.push((base, exponent)),
         }
     }
-    let (numerator, denominator) = (coefficient.numer().abs(), coefficient.denom());
+    // A decimal stands above the line.
+    let decimal = decimal_of_long_fraction(&coefficient.abs());
+    let (numerator, denominator) = match decimal {
+        Some(decimal) => (super::scientific_text(&decimal), Integer::one()),
+        None => (coefficient.numer().abs().to_string(), coefficient.denom().clone()),
+    };
     let is_fraction = !denominator.is_one() || !below.is_empty();
     let above = match above.as_slice() {
         // As what is alone under it.
-        [(base, exponent)] if is_fraction && numerator.is_one() && exponent.is_one() => {
+        [(base, exponent)] if is_fraction && numerator == "1" && exponent.is_one() => {
             vec![Piece::Expr(base.clone(), Place::Inside)]
         }
-        _ => row(
-            (!numerator.is_one() || above.is_empty()).then(|| numerator.to_string()),
-            &above,
-        ),
+        _ => row((numerator != "1" || above.is_empty()).then_some(numerator), &above),
     };
     let below = match below.as_slice() {
         [] if denominator.is_one() => return above,
@@ -308,6 +311,8 @@ mod tests {
             ),
             ("-(b - a)/y", r"\frac{a - b}{y}"),
             ("sqrt(b - a)*y", r"y \sqrt{b - a}"),
+            ("1.23456789012345*x/y", r"\frac{1.23456789012345 x}{y}"),
+            ("2.5e-20*x^2", r"2.5 \cdot 10^{-20} x^{2}"),
         ] {
             let parsed = parse_expression(text).expect(text);
             assert_eq!(expression(&parsed), expected, "{text}");

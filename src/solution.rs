@@ -12,6 +12,7 @@ mod closed_root;
 pub mod convergence;
 mod degrees;
 pub mod law;
+mod linear_drive;
 mod method;
 pub mod modulation;
 pub mod note;

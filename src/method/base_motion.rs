@@ -72,7 +72,7 @@ fn base_motion(oscillator: &Oscillator) -> Result<Option<Expr>, Refusal> {
     Ok(None)
 }
 
-/// What moves in time beside a coordinate or a velocity in a sum, over its factor; `None` where the sum is another one.
+/// The part of a sum that moves in time beside a coordinate or a velocity, over the factor of that; `None` where the sum is another one.
 fn beside(sum: &Expr, name: Symbol, own: [Symbol; 2]) -> Result<Option<Expr>, ExprError> {
     let t = Symbol::new("t");
     let (moving, still): (Vec<&Expr>, Vec<&Expr>) = sum.terms().iter().partition(|term| term.contains(t));

@@ -224,7 +224,7 @@ fn left_out(count: usize) -> Option<String> {
         count => format!("{count} more steady motions"),
     };
     Some(format!(
-        "{motions} of the truncated slow equations left out: at such an amplitude the last order is no smaller than the one before it, so that the series does not converge, and no true motion is near"
+        "{motions} of the truncated slow equations left out: at such an amplitude the last order is more than half of the one before it, so that the series hardly converges, and no true motion is near"
     ))
 }
 

@@ -317,14 +317,14 @@ impl Field {
         const STEPS: usize = 40;
         /// A step that rounding leaves, also where two steady motions meet.
         const SETTLED: f64 = 1e-6;
-        let radius = start[0].hypot(start[1]);
         let mut place = start;
-        let mut moved = f64::INFINITY;
+        let (mut radius, mut moved) = (start[0].hypot(start[1]), f64::INFINITY);
         for _ in 0..STEPS {
             let [u, v] = self.rates_at(place);
             let step = self.jacobian(place).try_inverse()? * Vector2::new(u, v);
             place = [place[0] - step[0], place[1] - step[1]];
             moved = step.norm();
+            radius = radius.max(place[0].hypot(place[1]));
             if moved <= 1e-15 * radius {
                 break;
             }
@@ -335,7 +335,7 @@ impl Field {
     /// A radius beyond which the terms of the highest degree outweigh all others, as far as they vanish nowhere on it.
     fn outermost(&self) -> f64 {
         const ANGLES: usize = 72;
-        /// Where they almost vanish they are not waited for.
+        /// The least part of their sizes that counts where they almost vanish.
         const LEAST: f64 = 1e-2;
         let degree = self.rates.iter().map(PlanePolynomial::degree).max().unwrap_or(0);
         let size = |wanted: &dyn Fn(i32) -> bool, radius: f64| -> f64 {
@@ -469,7 +469,7 @@ impl Field {
     }
 }
 
-/// What is known of the roots in a square.
+/// The roots in a square, as far as bounds tell.
 enum Look {
     Nothing,
     AtMostOne,

@@ -97,7 +97,7 @@ impl SteadyState {
 
 impl Solution {
     /// Every steady motion of a driven oscillator at given values, by its slow equations, largest amplitude first; nothing for
-    /// other motions, and where a value is missing. Those at an amplitude at which the series does not converge are
+    /// other motions, and where a value is missing. Those at an amplitude at which the series hardly converges are
     /// [left out](Self::steady_motions).
     ///
     /// ```
@@ -116,7 +116,7 @@ impl Solution {
     }
 
     /// Every place at which both rates of the slow equations vanish, and apart from the others those at an amplitude at which the last
-    /// order of the slow equations is no smaller than the one before it: there the series does not converge.
+    /// order of the slow equations is more than half of the one before it: there the series hardly converges.
     pub fn steady_motions(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> SteadyMotions {
         // Definitions are evaluated once, not with each coefficient.
         let defined = self.defined_values(value_of).unwrap_or_default();

@@ -4,8 +4,8 @@
 //! S_0(a) = omega a,     S_k(a) = the sum of the sizes of all terms of the k-th order, of degree two and above in the amplitude
 //! ```
 //!
-//! The series is of use as long as each order is smaller than the one before. Where the last one is no smaller, a steady motion balances
-//! what was kept against what was left out, and says nothing of the equation. The degrees nought and one are there at every amplitude, such
+//! The series is of use as long as each order is much smaller than the one before. Where the last one is more than half of that, a steady
+//! motion balances what was kept against what was left out, and says nothing of the equation. The degrees nought and one are there at every amplitude, such
 //! as a shift of the linear frequency, and do not count. That no true motion is near such a steady motion is for the judge to find.
 
 use super::Solution;
@@ -40,9 +40,10 @@ impl Orders {
         })
     }
 
-    /// Whether at this amplitude the last order is no smaller than the one before it.
+    /// Whether at this amplitude the last order is more than half of the one before it.
     pub(super) fn is_spurious(&self, amplitude: f64) -> bool {
         const LINEAR: i32 = 1;
+        const HALF: f64 = 0.5;
         let count = self.parts.iter().map(Vec::len).max().unwrap_or(0);
         if count < 2 {
             return false;
@@ -53,6 +54,6 @@ impl Orders {
         };
         let sizes = std::iter::once(self.frequency * amplitude).chain((0..count).map(added));
         let sizes: Vec<f64> = sizes.filter(|size| *size != 0.0).collect();
-        matches!(sizes.as_slice(), [.., before, last] if last >= before)
+        matches!(sizes.as_slice(), [.., before, last] if *last > HALF * before)
     }
 }

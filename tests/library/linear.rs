@@ -109,7 +109,7 @@ fn the_damped_frequency_is_that_of_textbooks() {
     assert_eq!(transient.amplitude.to_string(), "a0*exp(-zeta*t)");
 }
 
-/// What drives an undamped oscillator at its own frequency is named, and the motion grows in proportion to time.
+/// A drive at the frequency of an undamped oscillator is named, and the motion grows in proportion to time.
 #[test]
 fn resonance_of_an_undamped_oscillator_is_named() {
     let (_, solution) = answered("x'' + x = cos(t)");

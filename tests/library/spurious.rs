@@ -176,7 +176,7 @@ fn a_jump_moves_with_the_order() {
 
 const QUADRATIC: &str = "x'' + 2*zeta*x' + x + b*x^2 = F*cos(Omega*t)";
 
-/// Where nothing saturates to leading order a steady motion is one of the equation all the same: subharmonic and superharmonic motions whose
+/// A steady motion that nothing saturates to leading order is one of the equation all the same: subharmonic and superharmonic motions whose
 /// amplitude the second order decides, against the true ones.
 #[test]
 fn motions_that_the_last_order_holds_stay() {
@@ -270,7 +270,7 @@ fn steady_motions_are_all_roots_of_the_slow_equations() {
     }
 }
 
-/// Where Newton's method leads from a grid of places, by the rates in the plane alone.
+/// The places to which Newton's method leads from a grid, by the rates in the plane alone.
 fn on_grid(solution: &Solution, at: &Values, size: f64) -> Vec<[f64; 2]> {
     const STEPS: i32 = 24;
     let plane = solution

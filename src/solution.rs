@@ -12,9 +12,11 @@ mod closed_root;
 pub mod convergence;
 mod degrees;
 pub mod law;
+mod linear_drive;
 mod method;
 pub mod modulation;
 pub mod note;
+mod plane;
 mod polar;
 pub mod response;
 mod spurious;
@@ -270,6 +272,12 @@ impl Solution {
         Ok(values)
     }
 
+    /// The motion from rest at `x = A` as a function of time, where it is known as that.
+    pub fn in_time(&self) -> Option<&Expr> {
+        let response = self.response.as_ref().filter(|_| self.modulation.is_none());
+        response.map(|response| &response.motion)
+    }
+
     /// The slow equations, where the motion is one whose amplitude changes; of a periodic motion none.
     pub fn slow(&self) -> Option<&Modulation> {
         let slow = self.modulation.as_ref();
@@ -411,6 +419,9 @@ impl Solution {
 
     /// The name of the method and its order.
     pub fn title(&self) -> String {
+        if self.method == Method::Exact && (self.slow().is_some() || self.in_time().is_some()) {
+            return "Exact motion".to_owned();
+        }
         format!("{} {}", self.method.title(), self.order_in_words())
             .trim_end()
             .to_owned()

@@ -58,7 +58,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         )));
     };
     let (parameter, range) = range(vary)?;
-    let question = Question {
+    let mut question = Question {
         oscillator,
         values: exact_values(&arguments.at, problem.values_of_motion())?.unwrap_or_default(),
         parameter,
@@ -76,6 +76,14 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Method::HarmonicBalance => None,
         method => Some(slow_equations(&question, method, order)?),
     };
+    // Slow equations relative to a base that moves are held against motions in that coordinate.
+    if let Some(slow) = slow
+        .as_ref()
+        .filter(|slow| slow.coordinate() != question.oscillator.coordinate)
+    {
+        question.oscillator =
+            Oscillator::from_equation(&slow.equation).map_err(|error| Failure::advised(&error, error.help()))?;
+    }
     let mut response = with_progress("of this search, or of its points", || respond(&question)).map_err(refused)?;
     if let Some(solution) = slow {
         response = response.beside(solution);

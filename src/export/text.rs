@@ -446,8 +446,6 @@ pub(super) fn judgement(
         let mark = if range.outside { "  <- outside" } else { "" };
         line("range", format!("{}{mark}", range.text));
     }
-    let verdict = verification.verdict.name();
-    let within = significant(100.0 * tolerance, 3);
-    line("verdict", format!("{verdict} (|relative error| <= {within} %)"));
+    line("verdict", verification.verdict_in_words(tolerance));
     (heading, facts)
 }

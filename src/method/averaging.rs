@@ -96,7 +96,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         Ok(mut force) => {
             force.write_with_frequency(&oscillator.names());
             let mut averaged = of_polynomial(oscillator, &small, &force, order)?;
-            if order == 1 && has_quadratic_terms(oscillator, &parts) {
+            if order == 1 && has_quadratic_terms(oscillator) {
                 averaged.notes.push(Note::QuadraticTermsLeftOut);
             }
             averaged

@@ -1,6 +1,7 @@
 //! Which method answers where none is asked for.
 //!
 //! ```text
+//! linear, damped or driven               exact, where no order, resonance or small parameter is asked for
 //! time occurs                            multiple scales; averaging where the force has no expansion
 //! energy is drained or fed               Lindstedt-Poincare on a limit cycle, else averaging; multiple scales in powers of the
 //!                                        amplitude where quadratic terms stand beside a linear damping, or where averaging knows
@@ -14,6 +15,7 @@
 //!
 //! A formula of one term leaves the drift of an even force out, and is none then. Whatever stands in for the usual method says so.
 
+use super::linear::Linear;
 use super::multiple_scales::scaling::{has_linear_damping, has_quadratic_damping, has_quadratic_terms};
 use super::{Options, Refusal, Unsuited, solve_by};
 use crate::equilibrium::centred;
@@ -47,6 +49,9 @@ pub fn default_method(oscillator: &Oscillator) -> Method {
 /// # Errors
 /// The refusal of the usual method, where no other one takes its place.
 pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    if let Some(exact) = linear(oscillator, options) {
+        return Ok(exact);
+    }
     let usual = default_method(oscillator);
     let found = solve_by(usual, oscillator, options);
     let refusal = match &found {
@@ -85,6 +90,21 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Result<Soluti
         Some(solution) => Ok(solution),
         None => found,
     }
+}
+
+/// The exact motion of a linear equation that something damps or drives; `None` where the equation is another one, or an expansion of the
+/// motion is asked for.
+pub(super) fn linear(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
+    let expansion = options.method.is_some()
+        || options.order.is_some()
+        || options.resonance.is_some()
+        || options.small.is_some()
+        || options.cycle.is_some()
+        || options.frequency_alone;
+    if expansion || !about_equilibrium(oscillator, |centred, _| matches!(Linear::new(centred), Ok(Some(_)))) {
+        return None;
+    }
+    solve_by(Method::Exact, oscillator, options).ok()
 }
 
 /// Whether an expansion in periodic motions is refused for what drains or feeds energy.
@@ -150,7 +170,7 @@ fn begins_wrongly(solution: &Solution, oscillator: &Oscillator) -> bool {
     let marked = |note: &Note| matches!(note, Note::Cut(Cut::Truncated { marks: Some(_), .. }));
     solution.limit_cycle.is_some()
         && solution.validity.iter().any(marked)
-        && about_equilibrium(oscillator, has_quadratic_damping)
+        && about_equilibrium(oscillator, |centred, _| has_quadratic_damping(centred))
 }
 
 /// What is so of the oscillator about its equilibrium.
@@ -173,8 +193,8 @@ fn in_small_motions(oscillator: &Oscillator, options: &Options) -> Option<Soluti
     let small = oscillator.small_parameter(options.small.as_deref());
     let asked = options.small.is_some() && matches!(small, Ok(SmallParameter::Amplitude));
     let quadratic = |centred: &Oscillator, parts: &Parts| match has_linear_damping(centred, parts) {
-        true => has_quadratic_terms(centred, parts),
-        false => has_quadratic_damping(centred, parts),
+        true => has_quadratic_terms(centred),
+        false => has_quadratic_damping(centred),
     };
     let told = || options.cycle.is_some() || options.say_what_is_small(oscillator);
     if !asked && (told() || !about_equilibrium(oscillator, quadratic)) {

@@ -1,16 +1,19 @@
-//! What drives a motion: waves of one frequency in time, alone or beside powers of the coordinate and its velocity.
+//! What drives a motion: waves in time whose frequencies are multiples of one, alone or beside powers of the coordinate and its velocity.
 //!
 //! ```text
-//! F cos(Omega t + phi), F sin(Omega t), h x cos(Omega t), and sums of them
+//! F cos(Omega t + phi), F sin(Omega t), h x cos(2 Omega t), and sums of them
 //! ```
 //!
 //! Time begins where the first wave does: of the others the phase beside that of the first counts,
-//! `cos(theta + delta) = cos(delta) cos(theta) - sin(delta) sin(theta)`. What the coordinate adds to the phase, as in the wave
+//! `cos(m theta + delta) = cos(delta) cos(m theta) - sin(delta) sin(m theta)`. What the coordinate adds to the phase, as in the wave
 //! `cos(Omega t - k x)` that runs past, is taken apart alike: it is a factor of two waves.
 
-use num_traits::Zero;
+use num_integer::Integer as _;
+use num_traits::{Signed as _, ToPrimitive as _, Zero as _};
 
+use super::resonance::{RESONANCES, is_ratio};
 use super::{Refusal, Unsuited};
+use crate::exact::rational::Integer;
 use crate::exact::{Polynomial, Rational};
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::oscillator::{Oscillator, Parts};
@@ -20,9 +23,9 @@ use crate::symbol::{Symbol, fresh_stem};
 
 /// The waves of a drive.
 pub(super) struct Drive {
-    /// The driving frequency.
+    /// The driving frequency of which those of all waves are multiples.
     pub(super) frequency: Expr,
-    /// The phase of the first wave.
+    /// The phase of that frequency at which the first wave begins.
     pub(super) phase: Expr,
     /// What they drive.
     pub(super) terms: Vec<Driven>,
@@ -34,6 +37,8 @@ pub(super) struct Drive {
 pub(super) struct Driven {
     /// What stands before the wave.
     pub(super) factor: Expr,
+    /// The multiple of the driving frequency.
+    pub(super) multiple: u32,
     pub(super) quadrature: Quadrature,
     /// Of a [series](Drive::in_small_motions), by how much its degree is above that of the first term.
     pub(super) above: u32,
@@ -81,6 +86,7 @@ impl Driven {
             for (monomial, number) in polynomial.terms() {
                 terms.push(Self {
                     factor: Expr::from(&Polynomial::term(monomial.clone(), number.clone())),
+                    multiple: self.multiple,
                     quadrature: self.quadrature,
                     above: u32::try_from(power - first).ok()?,
                     term: self.term.clone(),
@@ -92,11 +98,13 @@ impl Driven {
 }
 
 impl Drive {
-    /// The one driving frequency, and the terms that it drives.
+    /// The driving frequency, and the terms that its multiples drive.
     ///
     /// # Errors
     /// A term that is no wave of it, by name.
     pub(super) fn of(parts: &Parts, oscillator: &Oscillator, method: Method) -> Result<Self, Refusal> {
+        /// The frequencies of two waves, as multiples of one.
+        const HIGHEST_MULTIPLE: u32 = 12;
         let taken = oscillator.names();
         let mut drive = Self {
             frequency: Expr::one(),
@@ -104,20 +112,105 @@ impl Drive {
             terms: vec![],
             definitions: vec![],
         };
-        for (number, term) in parts.forcing.terms().iter().enumerate() {
-            let wave = Wave::of(term, method)?;
-            if number == 0 {
-                drive.frequency = wave.rate.clone();
-                drive.phase = wave.still_phase(oscillator.coordinate);
-            } else if drive.frequency != wave.rate {
+        let terms = parts.forcing.terms();
+        let waves: Vec<Wave> = terms
+            .iter()
+            .map(|term| Wave::new(term, method))
+            .collect::<Result<_, _>>()?;
+        let Some(first) = waves.first() else {
+            return Ok(drive);
+        };
+        let mut multiples: Vec<Rational> = vec![];
+        for (wave, term) in waves.iter().zip(terms) {
+            let multiple = Expr::divide(&wave.rate, &first.rate)?.expand()?;
+            match multiple.as_number().filter(|number| number.is_positive()) {
+                Some(multiple) => multiples.push(multiple.clone()),
+                None => {
+                    let term = term.clone().into();
+                    return Err(Unsuited::SecondDrive { term }.to(method));
+                }
+            }
+        }
+        // The largest rate of which all are multiples.
+        let below = multiples
+            .iter()
+            .fold(1.into(), |common: Integer, own| common.lcm(own.denom()));
+        let whole: Vec<Integer> = multiples
+            .iter()
+            .map(|own| (own * Rational::from_integer(below.clone())).to_integer())
+            .collect();
+        let common = whole.iter().fold(0.into(), |common: Integer, own| common.gcd(own));
+        let unit = Rational::new(common.clone(), below);
+        drive.frequency = (&Expr::number(unit) * &first.rate).expand()?;
+        let multiple_of = |number: &Integer| (number / &common).to_u32().filter(|own| *own <= HIGHEST_MULTIPLE);
+        for ((wave, number), term) in waves.into_iter().zip(&whole).zip(terms) {
+            let Some(multiple) = multiple_of(number) else {
                 let term = term.clone().into();
                 return Err(Unsuited::SecondDrive { term }.to(method));
+            };
+            if drive.terms.is_empty() {
+                let phase = wave.still_phase(oscillator.coordinate);
+                drive.phase = Expr::divide(&phase, &Expr::from(i64::from(multiple)))?.expand()?;
             }
             for wave in wave.apart_from(oscillator.coordinate)? {
-                drive.add(wave, term, &taken)?;
+                drive.add(wave, multiple, term, &taken)?;
             }
         }
         Ok(drive)
+    }
+
+    /// The ratio to the linear frequency of the wave that is in resonance, at a ratio of the driving frequency; `None` where only sums and
+    /// differences of several frequencies are.
+    pub(super) fn nearest(&self, (p, q): (u32, u32)) -> Option<(u32, u32)> {
+        if self.terms.iter().all(|driven| driven.multiple == 1) {
+            return Some((p, q));
+        }
+        let ratios: Vec<(u32, u32)> = self
+            .terms
+            .iter()
+            .map(|driven| {
+                let above = p * driven.multiple;
+                let common = above.gcd(&q);
+                (above / common, q / common)
+            })
+            .collect();
+        RESONANCES.into_iter().find(|known| ratios.contains(known))
+    }
+
+    /// The resonances at which one of the waves has one of the [known ratios](RESONANCES) to the linear frequency, or a sum or difference
+    /// of two frequencies or of one and twice another is that, as ratios of the driving frequency, the likeliest first.
+    pub(super) fn resonances(&self) -> Vec<(u32, u32)> {
+        let mut multiples: Vec<u32> = self.terms.iter().map(|driven| driven.multiple).collect();
+        multiples.sort_unstable();
+        multiples.dedup();
+        let ratios = RESONANCES.into_iter().flat_map(|(p, q)| {
+            multiples.iter().map(move |multiple| {
+                let below = q * multiple;
+                let common = p.gcd(&below);
+                (p / common, below / common)
+            })
+        });
+        let pairs = || {
+            multiples
+                .iter()
+                .flat_map(|one| multiples.iter().map(move |other| (*one, *other)))
+        };
+        let combined = pairs().filter(|(one, other)| one < other).flat_map(|(one, other)| {
+            let twice = [
+                2 * one + other,
+                (2 * one).abs_diff(other),
+                one + 2 * other,
+                2 * other - one,
+            ];
+            [one + other, other - one].into_iter().chain(twice)
+        });
+        let mut found = vec![];
+        for ratio in ratios.chain(combined.map(|sum| (1, sum))) {
+            if is_ratio(ratio) && !found.contains(&ratio) {
+                found.push(ratio);
+            }
+        }
+        found
     }
 
     /// The same with functions of the motion as their series about rest, up to a degree: `h sin(x) cos(Omega t)` of a shaken pendulum.
@@ -134,23 +227,29 @@ impl Drive {
         self
     }
 
+    /// The driving frequency of one of the waves.
+    pub(super) fn frequency_of(&self, driven: &Driven) -> Expr {
+        &Expr::from(i64::from(driven.multiple)) * &self.frequency
+    }
+
     /// The argument of the waves: `Omega t + phi`.
     pub(super) fn angle(&self) -> Expr {
         &(&self.frequency * &Expr::symbol("t")) + &self.phase
     }
 
-    fn add(&mut self, wave: Wave, term: &Expr, taken: &[Symbol]) -> Result<(), ExprError> {
+    fn add(&mut self, wave: Wave, multiple: u32, term: &Expr, taken: &[Symbol]) -> Result<(), ExprError> {
         let mut push = |factor: Expr, quadrature| {
             if !factor.is_zero() {
                 self.terms.push(Driven {
                     factor,
+                    multiple,
                     quadrature,
                     above: 0,
                     term: term.clone(),
                 });
             }
         };
-        let apart = (&wave.phase - &self.phase).expand()?;
+        let apart = (&wave.phase - &(&Expr::from(i64::from(multiple)) * &self.phase)).expand()?;
         if apart.is_zero() {
             push(wave.factor, wave.quadrature);
             return Ok(());
@@ -179,15 +278,17 @@ fn named(value: Expr, letter: &str, definitions: &mut Vec<Definition>, taken: &[
 }
 
 /// One term: `factor cos(rate t + phase)` or the sine of that, the rate without a minus.
-struct Wave {
-    factor: Expr,
-    rate: Expr,
-    phase: Expr,
-    quadrature: Quadrature,
+pub(super) struct Wave {
+    pub(super) factor: Expr,
+    pub(super) rate: Expr,
+    pub(super) phase: Expr,
+    pub(super) quadrature: Quadrature,
 }
 
 impl Wave {
-    fn of(term: &Expr, method: Method) -> Result<Self, Refusal> {
+    /// # Errors
+    /// A term that is no single wave, by name.
+    pub(super) fn new(term: &Expr, method: Method) -> Result<Self, Refusal> {
         let t = Symbol::new("t");
         let not_periodic = || {
             let term = term.clone().into();

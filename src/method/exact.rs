@@ -38,6 +38,7 @@ use num_traits::{One, Zero};
 
 use super::energy_balance::positive_amplitude;
 use super::iteration_perturbation::polynomial_coefficients;
+use super::linear::Linear;
 use super::one_term::{conservative_force, unsolved};
 use super::{Options, Refusal};
 use crate::conservative::potential::potential;
@@ -52,12 +53,16 @@ use crate::series::FourierSeries;
 use crate::solution::{ClosedForm, Law, Method, Note, Solution, note::ExactBy};
 use crate::symbol::fresh;
 
-/// The exact law of a conservative oscillator; its motion is known by numbers.
+/// The exact law of a conservative oscillator, whose motion is known by numbers; the exact motion of a linear one that something damps or
+/// drives.
 ///
 /// # Errors
-/// A force that is not conservative, by its term.
+/// A force that is neither conservative nor linear, by its term.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     const METHOD: Method = Method::Exact;
+    if let Some(linear) = Linear::new(oscillator)? {
+        return linear.solve(oscillator, options);
+    }
     let force = conservative_force(oscillator, options, METHOD)?;
     let mut solution = unsolved(oscillator, options, METHOD, 0);
     solution.displacement = FourierSeries::zero(POLYNOMIALS);

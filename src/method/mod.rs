@@ -10,6 +10,7 @@
 pub(crate) mod amplitude_frequency;
 pub(crate) mod averaging;
 pub(crate) mod balance;
+mod base_motion;
 mod default_method;
 mod drive;
 mod driven_answer;
@@ -30,6 +31,7 @@ pub(crate) mod iteration_perturbation;
 pub(crate) mod joint_expansion;
 pub(crate) mod limit_cycle;
 pub(crate) mod lindstedt_poincare;
+mod linear;
 pub(crate) mod max_min;
 pub(crate) mod motion;
 pub(crate) mod multiple_scales;
@@ -234,7 +236,9 @@ pub enum Unsuited {
         term: Quotation,
     },
     /// A second driving frequency.
-    #[error("takes one drive, but the term `{term}` is a second one")]
+    #[error(
+        "takes drives whose frequencies are small multiples of one, but that of the term `{term}` and of the first are none that is known"
+    )]
     SecondDrive {
         /// The term.
         term: Quotation,
@@ -331,6 +335,14 @@ pub enum Unsuited {
     FirstOrderOfPower {
         /// The force.
         term: Quotation,
+    },
+    /// An order in the amplitude below that at which anything holds a motion that is damped or driven.
+    #[error(
+        "needs order {lowest} in the amplitude here: below it no damping, no detuning and no nonlinear term holds the motion"
+    )]
+    BelowBalance {
+        /// The lowest order at which they balance.
+        lowest: u32,
     },
     /// An order below what a method has.
     #[error("has no order below {lowest}")]
@@ -435,9 +447,10 @@ impl Unsuited {
             Self::Convention => {
                 Advice::words("leave out ").choose(Setting::Amplitude(AmplitudeConvention::FirstHarmonic))
             }
-            Self::NoWave { .. } | Self::SecondDrive { .. } => {
-                Advice::words("in numbers any equation can be followed: `lindstedt simulate`")
-            }
+            Self::NoWave { .. } => Advice::words("in numbers any equation can be followed: `lindstedt simulate`"),
+            Self::SecondDrive { .. } => Advice::words(
+                "write both as multiples of one letter or number, such as cos(W*t) and cos(3*W*t): combination resonances of frequencies without such a ratio are not derived; in numbers any equation can be followed: `lindstedt simulate`",
+            ),
             Self::ResonanceWithoutDamping { .. } => Advice::words(
                 "the amplitude grows in proportion to time, x = (F/(2*omega0))*t*sin(omega0*t) for F*cos(omega0*t); give a damping such as 2*zeta*x'",
             ),
@@ -475,7 +488,7 @@ impl Unsuited {
             Self::FirstOrderOfPower { .. } => Advice::words("try ")
                 .choose(Setting::Order(1))
                 .then(", which holds at any amplitude; in numbers `lindstedt simulate` follows the motion"),
-            Self::LowestOrder { lowest } => Advice::words("try ").choose(Setting::Order(*lowest)),
+            Self::LowestOrder { lowest } | Self::BelowBalance { lowest } => Advice::words("try ").choose(Setting::Order(*lowest)),
             Self::SlowAmplitude => Advice::words("leave out ").choose(Setting::Amplitude(AmplitudeConvention::Initial)),
             Self::NoSteadyAmplitude => Advice::words("give numbers for the parameters, in the equation"),
             Self::NoProjection { .. } => {
@@ -671,9 +684,13 @@ fn solve_as_asked(oscillator: &Oscillator, options: &Options) -> Result<Solution
             return Err(refusal);
         }
     }
-    match options.method {
+    let found = match options.method {
         Some(method) => solve_by(method, oscillator, options),
         None => default_method::solve(oscillator, options),
+    };
+    match found.as_ref().is_err_and(base_motion::is_of_drive) {
+        true => base_motion::solve(oscillator, options).map_or(found, Ok),
+        false => found,
     }
 }
 

@@ -27,12 +27,11 @@ pub(super) fn ratio_of(frequency: &Expr, stiffness: &Expr) -> Option<f64> {
     Some(driving / squared.sqrt()).filter(|ratio| ratio.is_normal())
 }
 
-/// The resonances, the nearest to a ratio of the driving frequency to the linear one first.
-pub(super) fn by_distance(ratio: f64) -> Vec<(u32, u32)> {
+/// Resonances, the nearest to a ratio of the driving frequency to the linear one first.
+pub(super) fn by_distance(mut resonances: Vec<(u32, u32)>, ratio: f64) -> Vec<(u32, u32)> {
     let distance = |(p, q): &(u32, u32)| (ratio * f64::from(*q) / f64::from(*p)).ln().abs();
-    let mut sorted = RESONANCES.to_vec();
-    sorted.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-    sorted
+    resonances.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    resonances
 }
 
 /// An error where a ratio of frequencies is far from the resonance that is nearest to it: the detuning, which is to be small, is more
@@ -66,10 +65,14 @@ pub fn with_resonance_at(oscillator: &Oscillator, options: &Options, at: &Values
     if options.resonance.is_some() || !matches!(method, Method::MultipleScales | Method::Averaging) {
         return Ok(chosen);
     }
-    let Some(ratio) = ratio_at(oscillator, at, method) else {
+    // A linear equation is answered as it is, near a resonance or not.
+    if super::default_method::linear(oscillator, options).is_some() {
+        return Ok(chosen);
+    }
+    let Some((resonances, ratio)) = ratio_at(oscillator, at, method) else {
         return Ok(chosen);
     };
-    let found = by_distance(ratio).into_iter().find(|candidate| {
+    let found = by_distance(resonances, ratio).into_iter().find(|candidate| {
         let asked = Options {
             resonance: Some(*candidate),
             ..options.clone()
@@ -83,8 +86,8 @@ pub fn with_resonance_at(oscillator: &Oscillator, options: &Options, at: &Values
     Ok(chosen)
 }
 
-/// The ratio of the frequencies at these values; `None` where nothing drives, or one is missing.
-fn ratio_at(oscillator: &Oscillator, at: &Values, method: Method) -> Option<f64> {
+/// The resonances of the drive, and the ratio of the frequencies at these values; `None` where nothing drives, or one is missing.
+fn ratio_at(oscillator: &Oscillator, at: &Values, method: Method) -> Option<(Vec<(u32, u32)>, f64)> {
     let centred = crate::equilibrium::centred(oscillator, None).ok()?;
     let oscillator = &centred.oscillator;
     let parts = oscillator.parts().ok().filter(|parts| !parts.forcing.is_zero())?;
@@ -101,5 +104,5 @@ fn ratio_at(oscillator: &Oscillator, at: &Values, method: Method) -> Option<f64>
         .substitute(x, &Expr::zero())
         .ok()?;
     let ratio = drive.frequency.evaluate(&numbers).ok()? / stiffness.evaluate(&numbers).ok()?.sqrt();
-    Some(ratio).filter(|ratio| ratio.is_normal())
+    Some((drive.resonances(), ratio)).filter(|(_, ratio)| ratio.is_normal())
 }

@@ -9,7 +9,7 @@ use crate::exact::Polynomial;
 use crate::expr::Expr;
 use crate::solution::{Modulation, Response, Solution};
 use crate::symbol::Symbol;
-use crate::verify::{JudgedState, Verification};
+use crate::verify::{JudgedState, Verdict, Verification};
 
 /// The document of a driven motion.
 pub(super) fn driven<'a>(
@@ -23,15 +23,21 @@ pub(super) fn driven<'a>(
         amplitude: solution.amplitude.in_words(solution.coordinate()),
     };
     let mut sections = vec![vec![Block::Question(&solution.equation)], vec![title]];
-    if let Some(slow) = &solution.modulation {
-        sections.push(slow_equations(solution, response, slow));
+    match &solution.modulation {
+        Some(slow) => {
+            sections.push(slow_equations(solution, response, slow));
+            sections.push(steady_motions(solution, response));
+        }
+        None => sections.push(motion_in_time(solution, response)),
     }
-    sections.push(steady_motions(solution, response));
     let notes = solution.validity.iter().map(|note| Block::Note(note.to_string()));
     let heading = Block::Heading("Validity".to_owned());
     sections.push(std::iter::once(heading).chain(notes).collect());
     if let Some(verification) = verification {
-        sections.push(judged(verification, solution, tolerance));
+        sections.push(match solution.in_time() {
+            Some(_) => judged_in_time(verification, tolerance),
+            None => judged(verification, solution, tolerance),
+        });
     }
     Document { sections }
 }
@@ -43,6 +49,17 @@ fn equation<'a>(left: impl Into<Formula>, right: impl Into<Formula>) -> Block<'a
 /// Words before an equation.
 fn said<'a>(words: &str, left: impl Into<Formula>, right: impl Into<Formula>) -> Block<'a> {
     Block::Line(Cow::Owned(Line::equation(left, right).because(words)))
+}
+
+/// The motion as a function of time.
+fn motion_in_time<'a>(solution: &'a Solution, response: &Response) -> Vec<Block<'a>> {
+    let heading = format!("Released at rest from {} = A", solution.coordinate());
+    let mut blocks = vec![
+        Block::Heading(heading),
+        equation(solution.coordinate(), response.motion.clone()),
+    ];
+    blocks.extend(solution.definitions.iter().map(Block::Definition));
+    blocks
 }
 
 /// The motion in amplitude and phase, and how these change.
@@ -110,18 +127,47 @@ fn detuning(solution: &Solution) -> Option<Symbol> {
     Some(resonance.detuning.symbol)
 }
 
-fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) -> Vec<Block<'a>> {
+/// The values at which a formula was judged, in running text.
+fn values_in_words(verification: &Verification) -> String {
     let at = verification.at.iter();
     let at: Vec<String> = at.map(|(name, value)| format!("{name} = {value}")).collect();
-    let at = if at.is_empty() {
+    if at.is_empty() {
         String::new()
     } else {
         format!(" at {}", at.join(", "))
+    }
+}
+
+fn judged_in_time<'a>(verification: &Verification, tolerance: f64) -> Vec<Block<'a>> {
+    let at = values_in_words(verification);
+    let mut blocks = vec![Block::Heading(format!("Judged against the true motion{at}"))];
+    blocks.extend(verification.ranges.iter().map(|range| Block::Note(range.text.clone())));
+    /// Below it is rounding, and called that.
+    const ROUNDING: f64 = 1e-9;
+    let percent = |part: Option<f64>| match part {
+        Some(part) if part < ROUNDING => "< 1e-7 %".to_owned(),
+        Some(part) => format!("{} %", significant(100.0 * part, 3)),
+        None => "without a number".to_owned(),
     };
+    blocks.push(Block::Note(format!(
+        "largest deviation {} of the largest displacement, residual {} of the force (rms)",
+        percent(verification.max_deviation),
+        percent(verification.residual)
+    )));
+    blocks.push(Block::Note(format!(
+        "verdict {}: |largest deviation| <= {} %",
+        verification.verdict.name(),
+        significant(100.0 * tolerance, 3)
+    )));
+    blocks
+}
+
+fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) -> Vec<Block<'a>> {
+    let at = values_in_words(verification);
     let mut blocks = vec![Block::Heading(format!("Steady motions{at}, beside the true ones"))];
     if verification.steady_states.is_empty() {
         blocks.push(Block::Note(
-            "none: to this order the frequency response has no root at these values".to_owned(),
+            "none: to this order the slow equations have no steady motion at these values".to_owned(),
         ));
     } else {
         let heading = |text, latex| Heading { text, latex };
@@ -158,8 +204,13 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
         )));
         return blocks;
     }
+    let far_off = verification.max_deviation.filter(|deviation| *deviation > tolerance);
+    let motion = match (verification.verdict, far_off) {
+        (Verdict::Pass, Some(deviation)) => format!("; its motion is off by {} %", significant(100.0 * deviation, 3)),
+        _ => String::new(),
+    };
     blocks.push(Block::Note(format!(
-        "verdict {verdict}: of the largest stable one |error of {}| <= {within} %, and the true one is stable too",
+        "verdict {verdict}: of the largest stable one |error of {}| <= {within} %, and the true one is stable too{motion}",
         solution.amplitude.symbol()
     )));
     blocks
@@ -167,14 +218,13 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
 
 /// What is said of steady motions that the truncation alone makes.
 fn left_out(count: usize) -> Option<String> {
-    let (motions, tend) = match count {
+    let motions = match count {
         0 => return None,
-        1 => ("1 more steady motion", "it tends"),
-        _ => ("more steady motions", "they tend"),
+        1 => "1 more steady motion".to_owned(),
+        count => format!("{count} more steady motions"),
     };
-    let count = if count == 1 { String::new() } else { format!("{count} ") };
     Some(format!(
-        "{count}{motions} of the truncated slow equations left out: {tend} to none of the leading order as what is small goes to zero, for the series does not converge at such an amplitude"
+        "{motions} of the truncated slow equations left out: at such an amplitude the last order is more than half of the one before it, so that the series hardly converges, and no true motion is near"
     ))
 }
 

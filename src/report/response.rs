@@ -458,8 +458,8 @@ fn by_slow_equations(response: &Response, slow: &SlowResponse) -> Vec<Block<'sta
         facts.push((
             "left out",
             format!(
-                "{} steady motions of the truncated slow equations, amplitudes from {low} to {high}: they tend to none of the leading \
-                 order as what is small goes to zero, for the series does not converge there",
+                "{} steady motions of the truncated slow equations, amplitudes from {low} to {high}: the last order is more than half \
+                 of the one before it there, so that the series hardly converges",
                 spurious.count
             ),
         ));

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+pub use super::linear_drive::LinearDrive;
 use super::{Definition, Degrees, LeadingCycle, Method};
 use crate::decimal::decimal;
 use crate::exact::Polynomial;
@@ -98,6 +99,8 @@ pub enum Note {
         resonance: (u32, u32),
         /// Whether the drive is in a coefficient.
         parametric: bool,
+        /// Of several drives the ratio of the one in resonance to omega0; `None` where only sums and differences of them are.
+        nearest: Option<(u32, u32)>,
         /// What counts as small.
         small: Vec<Expr>,
         /// As which power of the small parameter.
@@ -140,6 +143,17 @@ pub enum Note {
     },
     /// A motion that nothing drains.
     Grows,
+    /// The motion relative to a base that moves.
+    RelativeCoordinate {
+        /// The relative coordinate.
+        relative: Symbol,
+        /// The coordinate of the equation.
+        coordinate: Symbol,
+        /// The motion of the base.
+        base: Expr,
+    },
+    /// A linear oscillator under a drive.
+    LinearDrive(LinearDrive),
     /// An order that a method chosen by default does not reach.
     HighestOrderHere {
         /// The order asked for.
@@ -316,6 +330,8 @@ pub enum ExactBy {
     EnergyQuadrature,
     /// By quadrature, because nothing else is known.
     Quadrature,
+    /// As the motion of a linear equation.
+    Linear,
 }
 
 /// A corner of a force whose side at rest the sign of a letter decides.
@@ -461,6 +477,17 @@ impl fmt::Display for Note {
             Self::Action { rate, pendulum } => action(formatter, rate, *pendulum),
             Self::HalfSwings { lost, size } => half_swings(formatter, lost, size),
             Self::Grows => formatter.write_str("the amplitude grows: energy is fed and nothing drains it"),
+            Self::LinearDrive(drive) => drive.fmt(formatter),
+            Self::RelativeCoordinate {
+                relative,
+                coordinate,
+                base,
+            } => write!(
+                formatter,
+                "in the coordinate relative to the base: {relative} = {}, so that {coordinate} = {}",
+                &Expr::from(*coordinate) - base,
+                &Expr::from(*relative) + base
+            ),
             Self::HighestOrderHere { asked, given } => write!(
                 formatter,
                 "order {asked} was asked for; {given} is the highest for this equation"
@@ -499,7 +526,11 @@ impl fmt::Display for Note {
                 parametric,
                 small,
                 power,
-            } => driven(formatter, *resonance, *parametric, small, *power),
+                nearest,
+            } => {
+                let name = resonance_in_words(*nearest, *parametric);
+                driven(formatter, *resonance, &name, small, *power)
+            }
             Self::LeastForce { force, least } => {
                 write!(
                     formatter,
@@ -559,24 +590,30 @@ fn action(formatter: &mut fmt::Formatter<'_>, rate: &Expr, pendulum: bool) -> fm
     }
 }
 
+fn resonance_in_words(nearest: Option<(u32, u32)>, parametric: bool) -> String {
+    match nearest {
+        None => "combination resonance".to_owned(),
+        Some((2, 1)) if parametric => "principal parametric resonance".to_owned(),
+        Some((p, q)) if parametric => format!("parametric resonance {p}:{q}"),
+        Some((1, 1)) => "primary resonance".to_owned(),
+        Some((1, q)) => format!("superharmonic resonance 1:{q}"),
+        Some((p, q)) => format!("subharmonic resonance {p}:{q}"),
+    }
+}
+
 fn driven(
     formatter: &mut fmt::Formatter<'_>,
     resonance: (u32, u32),
-    parametric: bool,
+    name: &str,
     small: &[Expr],
     power: usize,
 ) -> fmt::Result {
     let (p, q) = resonance;
-    let name = match resonance {
-        (2, 1) if parametric => "principal parametric resonance".to_owned(),
-        (p, q) if parametric => format!("parametric resonance {p}:{q}"),
-        (1, 1) => "primary resonance".to_owned(),
-        (1, q) => format!("superharmonic resonance 1:{q}"),
-        (p, q) => format!("subharmonic resonance {p}:{q}"),
-    };
     let as_power = match power {
-        1 => "the small parameter",
-        _ => "the square of the small parameter",
+        1 => "the small parameter".to_owned(),
+        2 => "the square of the small parameter".to_owned(),
+        4 => "the fourth power of the small parameter".to_owned(),
+        power => format!("the power {power} of the small parameter"),
     };
     write!(
         formatter,
@@ -743,9 +780,12 @@ impl fmt::Display for FirstStep {
 
 impl fmt::Display for ExactBy {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if *self == Self::Linear {
+            return formatter.write_str("exact: the equation is linear with constant coefficients");
+        }
         formatter.write_str("exact wherever the motion is periodic")?;
         formatter.write_str(match self {
-            Self::ClosedForm => "",
+            Self::ClosedForm | Self::Linear => "",
             Self::EnergyQuadrature => ", by quadrature of the energy",
             Self::Quadrature => ", by quadrature: no elliptic or Gamma function is known to give it",
         })

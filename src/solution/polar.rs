@@ -14,7 +14,7 @@ use super::response::{SteadyState, wrapped};
 use super::{Modulation, Solution};
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};
-use crate::numeric::ode::root::find_root;
+use crate::numeric::ode::root::{find_minimum, find_root};
 use crate::symbol::Symbol;
 
 /// Every steady motion at given values, largest amplitude first; `None` where a value is missing.
@@ -117,15 +117,23 @@ impl Rates {
         let count = (DECADES as usize) * PER_DECADE;
         let place = |k: usize| 10.0_f64.powf(DECADES * (k as f64 / count as f64 - 0.5));
         let mut found = vec![];
-        let mut before = (place(0), self.excess(place(0)));
+        let mut between = |from: f64, to: f64| found.extend(find_root(|a| self.excess(a), from, to));
+        let value = |k: usize| (place(k), self.excess(place(k)));
+        let (mut first, mut before) = (value(0), value(0));
         for k in 1..=count {
-            let now = (place(k), self.excess(place(k)));
-            if before.1 * now.1 < 0.0
-                && let Ok(root) = find_root(|a| self.excess(a), before.0, now.0)
-            {
-                found.push(root);
+            let now = value(k);
+            if before.1 * now.1 < 0.0 {
+                between(before.0, now.0);
+            } else if first.1 * before.1 > 0.0 && before.1.abs() < first.1.abs().min(now.1.abs()) {
+                // Two that are nearer to each other than these steps.
+                let sign = before.1.signum();
+                let (lowest, least) = find_minimum(|a| sign * self.excess(a), first.0, now.0);
+                if least < 0.0 {
+                    between(first.0, lowest);
+                    between(lowest, now.0);
+                }
             }
-            before = now;
+            (first, before) = (before, now);
         }
         found
     }

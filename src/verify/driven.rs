@@ -142,15 +142,21 @@ impl<'a> Question<'a> {
         Some((defects / forces).sqrt()).filter(|value: &f64| value.is_finite())
     }
 
-    /// Every steady motion beside a true one; of two that lead to the same one, that has it which is as stable or else nearer.
-    fn judged_states(&self) -> Vec<JudgedState> {
-        let states = self.states();
+    /// Every steady motion beside a true one; of two that lead to the same one, that has it which is as stable or else nearer. Of those
+    /// at an amplitude at which the series does not converge only what has a true motion of its own near by, and how many have none.
+    fn judged_states(&self) -> (Vec<JudgedState>, usize) {
+        /// How far the true amplitude may be off.
+        const NEAR: f64 = 0.3;
+        let SteadyMotions { states, spurious } = self.steady_motions();
+        let (count, states) = (states.len(), [states, spurious].concat());
         let is_held = |state: &SteadyState| state.amplitude == 0.0 && self.truth.is_held(self.motion.equilibrium);
         let found: Vec<Option<PeriodicMotion>> = states
             .iter()
-            .map(|state| {
-                let search = || self.truth.near(&self.motion, *state);
-                (!is_held(state)).then(search).flatten()
+            .enumerate()
+            .map(|(k, state)| match (is_held(state), k < count) {
+                (true, _) => None,
+                (false, true) => self.truth.as_stable(&self.motion, *state),
+                (false, false) => self.truth.by_newton(&self.motion, *state, &[]),
             })
             .collect();
         let judge = |state: &SteadyState, found: Option<&PeriodicMotion>| match is_held(state) {
@@ -194,13 +200,22 @@ impl<'a> Question<'a> {
             known.extend(self.truth.starts(&found));
             Some(judged)
         };
-        (0..states.len())
+        let mut all: Vec<JudgedState> = (0..states.len())
             .map(|k| match (lost(k), &found[k]) {
                 (false, Some(_)) => judged[k].clone(),
                 _ if is_held(&states[k]) => judged[k].clone(),
+                _ if k >= count => judge(&states[k], None),
                 _ => another(&states[k]).unwrap_or_else(|| judge(&states[k], None)),
             })
-            .collect()
+            .collect();
+        let is_near = |judged: &JudgedState| judged.relative_error.is_some_and(|error| error.abs() <= NEAR);
+        let doubtful = all.split_off(count);
+        let (kept, left_out): (Vec<JudgedState>, Vec<JudgedState>) = doubtful.into_iter().partition(is_near);
+        if !kept.is_empty() {
+            all.extend(kept);
+            all.sort_by(|one, other| other.state.amplitude.total_cmp(&one.state.amplitude));
+        }
+        (all, left_out.len())
     }
 }
 
@@ -258,7 +273,7 @@ pub(super) fn judge(
     tolerance: f64,
 ) -> Result<Verification, VerificationError> {
     let question = Question::new(oscillator, solution, response, at)?;
-    let states = question.judged_states();
+    let (states, spurious) = question.judged_states();
     let judged = states.iter().find(|judged| judged.state.is_stable()).or(states.first());
     let passed = judged.filter(|judged| judged.state.is_stable()).is_some_and(|judged| {
         let agrees = judged.true_stable == Some(judged.state.is_stable());
@@ -286,7 +301,7 @@ pub(super) fn judge(
         phase: 0.0,
         motion: None,
         steady_states: states,
-        spurious: question.steady_motions().spurious.len(),
+        spurious,
         followed: None,
         verdict: Verdict::of(passed),
     })
@@ -343,6 +358,31 @@ impl Truth {
             ahead < 0.0 && back > 0.0 && ahead.abs().min(back.abs()) > 1e3 * SPEED
         };
         times.all(jumps)
+    }
+
+    /// The true periodic motion to which Newton's method leads from one by the formula, none of those that begin at the known places.
+    fn by_newton(&self, motion: &Formula, state: SteadyState, known: &[[f64; 2]]) -> Option<PeriodicMotion> {
+        let start = [motion.position(0.0, state), motion.velocity(0.0, state)];
+        let size = motion.size(self.period, state);
+        let size = if size > 0.0 { size } else { 1.0 };
+        let acceleration = |t: f64, x: f64, v: f64| -self.force.call(&[t, x, v]);
+        another_periodic_motion(&acceleration, self.period, start, size, known).ok()
+    }
+
+    /// The true periodic motion near one by the formula; where a second one is near that is as stable as it, and the first is not, that one.
+    fn as_stable(&self, motion: &Formula, state: SteadyState) -> Option<PeriodicMotion> {
+        /// How far the amplitude of the second may be off.
+        const NEAR: f64 = 0.3;
+        let found = self.near(motion, state)?;
+        let is_alike = |found: &PeriodicMotion| found.attracts() == state.is_stable();
+        let is_near = |found: &PeriodicMotion| (state.amplitude / found.harmonic(self.own) - 1.0).abs() <= NEAR;
+        if is_alike(&found) || state.amplitude == 0.0 {
+            return Some(found);
+        }
+        let second = self.by_newton(motion, state, &self.starts(&found));
+        second
+            .filter(|second| is_alike(second) && is_near(second))
+            .or(Some(found))
     }
 
     /// The true periodic motion near one by the formula.

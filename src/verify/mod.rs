@@ -22,6 +22,7 @@ pub mod comparison;
 pub(crate) mod convergence;
 mod driven;
 mod free_motion;
+mod in_time;
 mod largest;
 mod orbit;
 mod reach;
@@ -44,7 +45,7 @@ use self::largest::largest_over;
 use self::orbit::{Meant, NearCycle, Physics, SAMPLES, TrueMotion, true_frequency};
 use crate::conservative::features::Features;
 use crate::conservative::force::Force;
-use crate::decimal::decimal;
+use crate::decimal::{decimal, significant};
 use crate::exact::Doubles;
 use crate::expr::{EvaluationError, Expr, ExprError};
 use crate::method::numbers::{
@@ -132,6 +133,34 @@ pub struct Verification {
     pub followed: Option<Followed>,
     /// The verdict on the frequency; on the amplitude of a driven motion.
     pub verdict: Verdict,
+}
+
+impl Verification {
+    /// The verdict with what it was reached on: of a motion that changes frequency and amplitude both; of one that passes by its frequency
+    /// while the motion is further off, that as well.
+    pub fn verdict_in_words(&self, tolerance: f64) -> String {
+        let verdict = self.verdict.name();
+        let within = significant(100.0 * tolerance, 3);
+        let said = |what: &str, error: Option<f64>| match error.map(f64::abs) {
+            Some(error) if error <= tolerance => format!("{what} within {within} %"),
+            Some(error) => format!("{what} off by {} %", significant(100.0 * error, 3)),
+            None => format!("{what} without a number"),
+        };
+        let far_off = self.max_deviation.filter(|deviation| *deviation > tolerance);
+        match (&self.followed, self.verdict, far_off) {
+            (Some(followed), ..) => format!(
+                "{verdict}: {}, {}",
+                said("frequency", self.relative_error),
+                said("amplitude", followed.amplitude_error)
+            ),
+            (None, Verdict::Pass, Some(_)) => format!(
+                "{verdict}: {}, {}",
+                said("frequency", self.relative_error),
+                said("motion", far_off)
+            ),
+            (None, ..) => format!("{verdict} (|relative error| <= {within} %)"),
+        }
+    }
 }
 
 /// Why a formula could not be judged.
@@ -304,6 +333,12 @@ pub(crate) fn judge_to(
     tolerance: f64,
     extent: Extent,
 ) -> Result<Verification, VerificationError> {
+    if let Some(relative) = in_another_coordinate(oscillator, solution)? {
+        return judge_to(&relative, solution, at, tolerance, extent);
+    }
+    if let Some(motion) = solution.in_time() {
+        return in_time::judge(oscillator, solution, motion, at, tolerance);
+    }
     if let Some(response) = &solution.response {
         return driven::judge(oscillator, solution, response, at, tolerance);
     }
@@ -384,6 +419,17 @@ pub(crate) fn judge_to(
     })
 }
 
+/// The question in the coordinate of its answer, where that is another one: relative to a base that moves.
+fn in_another_coordinate(
+    oscillator: &Oscillator,
+    solution: &Solution,
+) -> Result<Option<Oscillator>, VerificationError> {
+    match solution.coordinate() == oscillator.coordinate {
+        true => Ok(None),
+        false => Ok(Some(Oscillator::from_equation(&solution.equation)?)),
+    }
+}
+
 /// An error where the amplitude of a free motion changes.
 fn periodic(solution: &Solution) -> Result<(), VerificationError> {
     let slow = solution.modulation.as_ref().filter(|_| solution.limit_cycle.is_none());
@@ -428,7 +474,7 @@ pub fn checked(solution: &Solution, at: &Values) -> Result<(), VerificationError
 fn checked_numbers(solution: &Solution, at: &Values) -> Result<BTreeMap<Symbol, f64>, VerificationError> {
     let needed = needed_values(solution);
     let mut known = solution.parameters.clone();
-    if solution.response.is_none() {
+    if solution.response.is_none() || solution.in_time().is_some() {
         known.push(amplitude_symbol(solution));
     }
     let start = AmplitudeConvention::Initial.symbol();
@@ -445,7 +491,8 @@ fn checked_numbers(solution: &Solution, at: &Values) -> Result<BTreeMap<Symbol, 
     // Where the frequency does not depend on the amplitude, any will do to compare the motion.
     let amplitude_symbol = amplitude_symbol(solution);
     let numbers = at.with(amplitude_symbol, at.get(amplitude_symbol).unwrap_or(1.0));
-    if solution.limit_cycle.is_none() && numbers[&amplitude_symbol] == 0.0 {
+    let may_rest = solution.limit_cycle.is_some() || solution.in_time().is_some();
+    if !may_rest && numbers[&amplitude_symbol] == 0.0 {
         return Err(VerificationError::AtRest);
     }
     Ok(numbers)
@@ -485,6 +532,12 @@ pub fn motions(
     solution: &Solution,
     at: &Values,
 ) -> Result<Option<Motions>, VerificationError> {
+    if let Some(relative) = in_another_coordinate(oscillator, solution)? {
+        return motions(&relative, solution, at);
+    }
+    if let Some(motion) = solution.in_time() {
+        return in_time::motions(oscillator, solution, motion, at).map(Some);
+    }
     if let Some(response) = &solution.response {
         return driven::motions(oscillator, solution, response, at);
     }

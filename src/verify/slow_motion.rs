@@ -13,7 +13,7 @@ use crate::expr::{CompiledFunction, Expr, ExprError};
 use crate::numeric::ode::root::find_root;
 use crate::numeric::ode::{Options as Integration, Point, integrate_first_order};
 use crate::solution::modulation::Release;
-use crate::solution::{AmplitudeConvention, Modulation, Solution};
+use crate::solution::{AmplitudeConvention, Method, Modulation, Solution};
 use crate::symbol::Symbol;
 
 /// Periods after which a motion is left.
@@ -189,7 +189,7 @@ impl SlowMotion {
             period,
             steady: steady.collect(),
             ends: ends.filter(|ends| *ends > 0.0).unwrap_or(f64::INFINITY),
-            drift_counts: solution.order > 2,
+            drift_counts: solution.order > 2 || solution.method == Method::Exact,
         })
     }
 
@@ -264,7 +264,7 @@ impl SlowMotion {
 
     /// When the turning points come down to a distance from the equilibrium.
     pub(super) fn turns_at(&self, distance: f64, longest: f64) -> Option<f64> {
-        self.falls_below(|t| self.at_phase(t, 0.0).abs(), distance, longest)
+        self.falls_below(|t| self.turned(t, 1.0).abs(), distance, longest)
     }
 
     fn falls_below(&self, measure: impl Fn(f64) -> f64, size: f64, longest: f64) -> Option<f64> {

@@ -3,7 +3,8 @@
 //! ```text
 //! small letters            their values halved, among them those of a drive that counts as small, and the detuning
 //! small terms in numbers   the equation seen from the equilibrium, all but its linear force halved
-//! small amplitude          x = x_eq + s y, s^2 halved:   y'' + f(x_eq + s y, s y')/s = 0, in which the amplitude stays as it is
+//! small amplitude          x = x_eq + s y, s^2 halved:   y'' + f(x_eq + s y, s y')/s = 0, in which the amplitude stays as it is;
+//!                          damping, detuning and a small drive by the power of s that the nonlinear terms have, s^4 for x^5 alone
 //! ```
 //!
 //! Numbers in an equation are no letters, so that the answer to the smaller question is derived again. A drive far from resonance is not
@@ -13,8 +14,10 @@ use std::collections::BTreeMap;
 
 use num_traits::ToPrimitive as _;
 
+use crate::equilibrium::centred;
 use crate::exact::rational::{from_f64, ratio};
-use crate::expr::{Expr, ExprError};
+use crate::expr::{Expr, ExprError, Node};
+use crate::method::multiple_scales::scaling::order_of_balance;
 use crate::method::{Options, solve};
 use crate::oscillator::Oscillator;
 use crate::series::taylor::taylor;
@@ -43,6 +46,17 @@ pub(super) fn smaller(
 /// Whether the amplitude is what is small.
 pub(super) fn is_small_in_amplitude(solution: &Solution) -> bool {
     solution.small_parameter == solution.amplitude.symbol()
+}
+
+/// The power of the amplitude as which damping, detuning and a small drive count in an expansion in that.
+fn power_of_balance(oscillator: &Oscillator, order: u32) -> i32 {
+    let order = || {
+        let centred = centred(oscillator, None).ok()?.oscillator;
+        let mut free = centred.clone();
+        free.force = (&centred.force - &centred.parts().ok()?.forcing).expand().ok()?;
+        i32::try_from(order_of_balance(&free, order)).ok()
+    };
+    order().unwrap_or(2)
 }
 
 fn resonance(solution: &Solution) -> Option<&Resonance> {
@@ -126,6 +140,13 @@ fn by_numbers(
     factor: f64,
 ) -> Option<Smaller> {
     let in_amplitude = is_small_in_amplitude(solution);
+    // What balances the nonlinear terms counts as a power of the amplitude, whose square is what is halved.
+    let power = if in_amplitude {
+        power_of_balance(oscillator, solution.order)
+    } else {
+        2
+    };
+    let factor_of_balance = factor.powf(f64::from(power) / 2.0);
     let number = |value: f64| from_f64(value).map(Expr::number);
     let (factor_number, root) = (number(factor)?, number(factor.sqrt())?);
     let known: Option<BTreeMap<Symbol, Expr>> = numbers
@@ -159,9 +180,8 @@ fn by_numbers(
     let inertia = seen(&parts.inertia).ok()?;
     let force = match in_amplitude {
         true => {
-            // A linear damping counts as the square of the amplitude.
             let viscous = &at_rest(&damping.differentiate(v).ok()?).ok()? * &Expr::from(v);
-            let less = &(&factor_number - &Expr::one()) * &viscous;
+            let less = &(&number(factor_of_balance)? - &Expr::one()) * &viscous;
             Expr::sum([restoring, damping, inertia, less])
         }
         false => {
@@ -179,13 +199,16 @@ fn by_numbers(
     question.about = Some(Expr::zero());
     if let Some(resonance) = resonance(solution) {
         options.resonance = Some((resonance.times_linear, resonance.times_driving));
-        let [driving, less] = retuned(solution, resonance, numbers, factor)?;
+        let [driving, less] = retuned(solution, resonance, numbers, factor_of_balance)?;
         let t = Symbol::new("t");
         let slower = &number(less / driving)? * &Expr::from(t);
         let forcing = seen(&parts.forcing).ok()?;
-        let scale = in_amplitude.then_some(factor.sqrt());
+        let scale = in_amplitude.then_some((factor.sqrt(), power));
         let drives = forcing.terms().iter().map(|term| {
-            let left = number(drive_left(term, [x, v], options.resonance, factor, scale)?)?;
+            let multiple = rate_of(term)? / driving;
+            let (p, q) = options.resonance?;
+            let resonant = (multiple * f64::from(p) - f64::from(q)).abs() < 1e-6;
+            let left = number(drive_left(term, [x, v], resonant, factor, scale)?)?;
             Some(&left * &term.substitute(t, &slower).ok()?)
         });
         let drives: Option<Vec<Expr>> = drives.collect();
@@ -202,22 +225,28 @@ fn by_numbers(
     })
 }
 
+/// The rate at which time turns the wave of a driven term.
+fn rate_of(term: &Expr) -> Option<f64> {
+    let t = Symbol::new("t");
+    let (_, factors) = term.factors();
+    let wave = factors.iter().find(|factor| factor.contains(t))?;
+    let Node::Function(_, arguments) = wave.node() else {
+        return None;
+    };
+    let rate = arguments[0].differentiate(t).ok()?.evaluate(&BTreeMap::new()).ok()?;
+    Some(rate.abs())
+}
+
 /// What is left of a driven term in the smaller question: a force far from resonance counts as the amplitude does, any other as what it
 /// has to balance.
-fn drive_left(
-    term: &Expr,
-    own: [Symbol; 2],
-    resonance: Option<(u32, u32)>,
-    factor: f64,
-    scale: Option<f64>,
-) -> Option<f64> {
+fn drive_left(term: &Expr, own: [Symbol; 2], resonant: bool, factor: f64, scale: Option<(f64, i32)>) -> Option<f64> {
     let degree = degree(term, own)?;
-    let hard = degree == 0 && resonance.is_some_and(|(p, q)| p != q);
-    let Some(scale) = scale else {
+    let hard = degree == 0 && !resonant;
+    let Some((scale, power)) = scale else {
         return Some(if hard { 1.0 } else { factor });
     };
     // The scale has its power of the degree less one already.
-    let wanted = if hard { 0 } else { i32::max(degree - 1, 2) };
+    let wanted = if hard { 0 } else { i32::max(degree - 1, power) };
     Some(scale.powi(wanted - (degree - 1)))
 }
 

@@ -93,7 +93,8 @@ pub(super) fn judge(
     let errors = judged.errors(*until);
     let amplitude_error = errors.amplitude;
     let slopes = slopes(oscillator, solution, numbers, &judged);
-    let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
+    let is_within = |error: Option<f64>| error.is_some_and(|error| error.abs() <= tolerance);
+    let pass = is_within(relative_error) && is_within(amplitude_error);
     let outside = amplitude_error.is_none_or(|error| error > tolerance);
     let ranges = amplitude_error.map(|error| Range {
         text: format!(

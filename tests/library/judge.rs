@@ -778,3 +778,32 @@ fn every_formula_of_a_table_has_its_definitions() {
         assert!(formula.len() < 2000, "{formula}");
     }
 }
+
+/// A verdict says all that it is reached on: the frequency, and how far the motion is off where that is further; of a motion that decays the
+/// amplitude as well, which is judged with the frequency.
+#[test]
+fn a_verdict_says_what_it_is_reached_on() {
+    let words = |equation: &str, method: Method, at: &str| {
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        let options = Options {
+            method: Some(method),
+            order: Some(1),
+            ..Options::default()
+        };
+        let solution = solve(&oscillator, &options).expect(equation);
+        let judged = judge(&oscillator, &solution, &at.parse().expect(at), 0.01).expect(equation);
+        judged.verdict_in_words(0.01)
+    };
+    let balanced = words("x'' + x + x^3 = 0", Method::HarmonicBalance, "A = 1");
+    assert_eq!(balanced, "pass: frequency within 1 %, motion off by 4.47 %");
+    let decays = words(
+        "x'' + 2*zeta*x' + sin(x) = 0",
+        Method::Averaging,
+        "zeta = 1/100, A = 3/2",
+    );
+    assert_eq!(decays, "fail: frequency within 1 %, amplitude off by 2.43 %");
+    let dry = words("x'' + x + alpha*sgn(x') = 0", Method::Averaging, "alpha = 1/100, A = 1");
+    assert_eq!(dry, "pass: frequency within 1 %, amplitude within 1 %");
+    let small = words("x'' + x + x^3 = 0", Method::HarmonicBalance, "A = 1/10");
+    assert_eq!(small, "pass (|relative error| <= 1 %)");
+}

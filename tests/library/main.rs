@@ -24,6 +24,7 @@ mod inertia;
 mod judge;
 mod layers;
 mod limit_cycles;
+mod linear;
 mod literature;
 mod mechanics;
 mod multiple_scales;

@@ -110,8 +110,8 @@ pub struct SlowDocument {
     pub largest_error: Option<f64>,
     /// Stable points of the branches near which the slow equations have no stable motion.
     pub missing: usize,
-    /// Steady motions of the truncated slow equations that are left out, at all values of the parameter together: they tend to none of
-    /// the leading order as what is small goes to zero. Left out where there are none.
+    /// Steady motions of the truncated slow equations that are left out, at all values of the parameter together: at their amplitude the
+    /// last order is more than half of the one before it. Left out where there are none.
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub spurious: usize,
     /// Whether the error is within the tolerance and no more than one point in twenty is missing.

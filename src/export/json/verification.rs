@@ -60,8 +60,8 @@ pub struct Verification {
     /// The steady motions of a driven equation, largest first; empty for any other.
     #[serde(default)]
     pub steady_states: Vec<SteadyState>,
-    /// How many steady motions of the truncated slow equations are no motions of the equation: they tend to none of the leading order
-    /// as what is small goes to zero. Left out where there are none.
+    /// How many steady motions of the truncated slow equations have no true motion near by, at amplitudes at which the last order is
+    /// more than half of the one before it. Left out where there are none.
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub spurious: usize,
     /// What else is known of a motion that is not periodic; null for any other.

@@ -28,7 +28,7 @@ use crate::method::driven_answer::DrivenMotion;
 use crate::method::frequency_response::FrequencyResponse;
 use crate::method::multiple_scales::driven::{Asked, is_of_resonance};
 use crate::method::multiple_scales::scaling::{Scaling, bounded};
-use crate::method::resonance::{RESONANCES, by_distance, is_near, is_ratio, ratio_of};
+use crate::method::resonance::{by_distance, is_near, is_ratio, ratio_of};
 use crate::method::{Options, Refusal, Unsuited, not_polynomial};
 use crate::oscillator::{Oscillator, OscillatorError, Parts};
 use crate::solution::response::{ClosedRelation, Response};
@@ -122,6 +122,7 @@ impl UnderDrive<'_> {
             small_with,
             bookkeeping: None,
             damping: None,
+            small_order: 1,
             order,
         })
     }
@@ -139,12 +140,14 @@ impl UnderDrive<'_> {
         let forces = drive.terms.iter().any(|driven| driven.is_force(oscillator.coordinate));
         let candidates = match (self.asked.resonance, near) {
             (Some(asked), _) => vec![asked],
-            (None, Some(ratio)) => by_distance(ratio),
+            (None, Some(ratio)) => by_distance(drive.resonances(), ratio),
             (None, None) if forces => vec![(1, 1)],
             (None, None) => vec![(2, 1), (1, 1)],
         };
+        // Waves of several frequencies turn with several multiples of the phase, which is for expansions.
+        let one_frequency = drive.terms.iter().all(|driven| driven.multiple == 1);
         let waves_at = |(p, q): (u32, u32)| match q {
-            1 if is_ratio((p, q)) => waves(drive, oscillator, &projected.omega0, p).map(Some),
+            1 if one_frequency && is_ratio((p, q)) => waves(drive, oscillator, &projected.omega0, p).map(Some),
             _ => Ok(None),
         };
         for resonance in candidates.iter().copied() {
@@ -163,7 +166,7 @@ impl UnderDrive<'_> {
         }
         let scaling = self.scaling(1).ok();
         let mut others = vec![];
-        for resonance in RESONANCES {
+        for resonance in drive.resonances() {
             let projected = waves_at(resonance)?.is_some_and(|waves| waves.reach());
             if projected
                 || scaling
@@ -441,6 +444,7 @@ impl<'a> Question<'a> {
             parametric: !forces,
             small: std::iter::once(Expr::from(self.sigma)).chain(factors).collect(),
             power: 1,
+            nearest: Some((self.p, 1)),
         };
         let root = self.projected.root.clone().map(Note::Positive);
         std::iter::once(driven).chain(root).collect()

@@ -15,6 +15,8 @@
 //! Where the motion is steady both vanish; the phase is eliminated by `cos^2 + sin^2 = 1`, which leaves the frequency-response
 //! equation. To first order it is `P^2 + Q^2 = S^2`, with `S` what the drive does.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::derivation::{averaged_lines, derivation};
 use super::names::Names;
 use super::scaling::{Scaling, bounded, has_linear_damping, has_quadratic_terms, scaling};
@@ -27,7 +29,7 @@ use crate::expr::Expr;
 use crate::method::drive::{Drive, Driven, Quadrature};
 use crate::method::driven_answer::DrivenMotion;
 use crate::method::lindstedt_poincare::{LinearPart, with_square};
-use crate::method::resonance::{RESONANCES, by_distance, is_near, is_ratio, ratio_of};
+use crate::method::resonance::{by_distance, is_near, is_ratio, ratio_of};
 use crate::method::{Options, Refusal, Unsuited};
 use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce};
 use crate::solution::{AmplitudeConvention, Definition, Law, Method, Note, Solution};
@@ -68,7 +70,7 @@ pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -
 fn bends_at_second_order(oscillator: &Oscillator, parts: &Parts) -> Result<bool, Refusal> {
     let free = undriven_oscillator(oscillator, parts)?;
     let parts = free.parts()?;
-    Ok(has_linear_damping(&free, &parts) && has_quadratic_terms(&free, &parts))
+    Ok(has_linear_damping(&free, &parts) && has_quadratic_terms(&free))
 }
 
 fn undriven_oscillator(oscillator: &Oscillator, parts: &Parts) -> Result<Oscillator, Refusal> {
@@ -93,9 +95,13 @@ fn expanded(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result
         Ok(scaling)
     };
     let scaling = scaling_of(options.order)?;
+    if scaling.is_below_balance() {
+        let lowest = u32::try_from(scaling.small_order).unwrap_or(u32::MAX);
+        return Err(Unsuited::BelowBalance { lowest }.to(Method::MultipleScales));
+    }
     let drive = match scaling.marker {
         Some(_) => drive,
-        None => drive.in_small_motions(oscillator.coordinate, 2 * HIGHEST + 1),
+        None => drive.in_small_motions(oscillator.coordinate, scaling.order + 1),
     };
     let asked = Asked {
         method: Method::MultipleScales,
@@ -106,7 +112,7 @@ fn expanded(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result
     let mut answer = asked.answer(&scaling);
     if let Ok(answer) = &mut answer
         && (scaling.marker.is_some(), scaling.order) == (true, 1)
-        && has_quadratic_terms(&free, &parts)
+        && has_quadratic_terms(&free)
     {
         answer.validity.push(Note::QuadraticTermsLeftOut);
     }
@@ -120,7 +126,7 @@ fn expanded(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result
         return answer;
     }
     // What one order says nothing about, a higher one may.
-    let highest = if scaling.marker.is_some() { HIGHEST } else { 2 * HIGHEST };
+    let highest = HIGHEST.saturating_mul(u32::try_from(scaling.small_order).unwrap_or(1));
     for order in scaling.order + 1..=highest {
         if let Some(found) = asked.answer_near(&scaling_of(Some(order))?) {
             return found;
@@ -184,9 +190,17 @@ impl Asked<'_> {
     fn candidates(&self, scaling: &Scaling) -> Vec<(u32, u32)> {
         match (self.resonance, self.near(scaling)) {
             (Some(asked), _) => vec![asked],
-            (None, Some(ratio)) => by_distance(ratio),
-            (None, None) if self.force().is_none() => vec![(2, 1), (1, 1)],
-            (None, None) => vec![(1, 1)],
+            (None, Some(ratio)) => by_distance(self.drive.resonances(), ratio),
+            (None, None) => {
+                // Of the first force, or else of what stands first.
+                let first = self.force().or(self.drive.terms.first());
+                let below = first.map_or(1, |driven| driven.multiple);
+                match self.force() {
+                    None if below % 2 == 0 => vec![(1, below / 2), (1, below)],
+                    None => vec![(2, below), (1, below)],
+                    Some(_) => vec![(1, below)],
+                }
+            }
         }
     }
 
@@ -211,13 +225,13 @@ impl Asked<'_> {
         let first = candidates.first().copied().unwrap_or((1, 1));
         let reaches = |candidate: &(u32, u32)| self.reaches(*candidate, scaling);
         let resonance = candidates.iter().copied().find(reaches).unwrap_or(first);
-        if resonance == (1, 1) && grows(scaling, self.drive) {
+        if grows(scaling, self.drive, resonance) {
             let term = self.force().or(self.drive.terms.first());
             let term = term.map_or_else(Expr::zero, |driven| driven.term.clone());
             return Err(Unsuited::ResonanceWithoutDamping { term: term.into() }.to(self.method));
         }
         let found = self.at(resonance, scaling)?.ok_or_else(|| {
-            let others = RESONANCES.into_iter().filter(reaches).collect();
+            let others = self.drive.resonances().into_iter().filter(reaches).collect();
             let asked = resonance;
             Unsuited::NoResonance { asked, others }.to(self.method)
         })?;
@@ -258,13 +272,10 @@ impl Asked<'_> {
 }
 
 /// Whether a linear force without damping is driven at its own frequency.
-fn grows(scaling: &Scaling, drive: &Drive) -> bool {
-    let linear = scaling.force.terms.is_empty();
-    let squared = Expr::product([drive.frequency.clone(), drive.frequency.clone()]);
-    let same = squared
-        .expand()
-        .is_ok_and(|squared| squared == scaling.force.linear_in_full());
-    linear && same && !drive.terms.is_empty()
+fn grows(scaling: &Scaling, drive: &Drive, (p, q): (u32, u32)) -> bool {
+    let own = drive.terms.iter().find(|driven| p * driven.multiple == q);
+    let squared = own.and_then(|driven| drive.frequency_of(driven).integer_power(2).ok()?.expand().ok());
+    scaling.force.terms.is_empty() && squared.is_some_and(|squared| squared == scaling.force.linear_in_full())
 }
 
 /// A question to the expansion.
@@ -280,8 +291,8 @@ pub(super) struct Question<'a> {
     definitions: Vec<Definition>,
     pub(super) names: Names,
     pub(super) sigma: Symbol,
-    /// `Lambda` of a cosine, and of a sine.
-    lambda: [Symbol; 2],
+    /// By the multiple of a drive far from resonance `Lambda` of its cosine, and of its sine.
+    lambda: BTreeMap<u32, [Symbol; 2]>,
     pub(super) taken: Vec<Symbol>,
 }
 
@@ -294,6 +305,20 @@ impl<'a> Question<'a> {
             definitions,
             taken,
         } = LinearPart::of(&scaling.force, oscillator);
+        let (p, q) = resonance;
+        let hard = drive
+            .terms
+            .iter()
+            .filter(|driven| driven.is_force(oscillator.coordinate));
+        let hard: BTreeSet<u32> = hard
+            .map(|driven| driven.multiple)
+            .filter(|multiple| p * multiple != q)
+            .collect();
+        let several = hard.len() > 1;
+        let lambda = |multiple: u32| {
+            let number = if several { multiple.to_string() } else { String::new() };
+            ["", "_s"].map(|ending| fresh(&format!("Lambda{number}{ending}"), &taken))
+        };
         Ok(Self {
             method: asked.method,
             oscillator,
@@ -305,14 +330,14 @@ impl<'a> Question<'a> {
             definitions,
             names: Names::new(&taken, oscillator.coordinate, scaling.marker),
             sigma: fresh("sigma", &taken),
-            lambda: ["Lambda", "Lambda_s"].map(|name| fresh(name, &taken)),
+            lambda: hard.into_iter().map(|multiple| (multiple, lambda(multiple))).collect(),
             taken,
         })
     }
 
     /// The order at which detuning, damping and a small drive enter.
     pub(super) fn small_order(&self) -> usize {
-        if self.scaling.marker.is_some() { 1 } else { 2 }
+        self.scaling.small_order
     }
 
     /// A driven term in powers of what is small.
@@ -348,7 +373,7 @@ impl<'a> Question<'a> {
             position,
             velocity,
             coefficient: self.scaling.force.written_with_frequency(coefficient, &names),
-            drive: Some((self.resonance.0 as i32, driven.quadrature)),
+            drive: Some(((self.resonance.0 * driven.multiple) as i32, driven.quadrature)),
         })
     }
 
@@ -356,11 +381,11 @@ impl<'a> Question<'a> {
     fn expand(&self, still: bool) -> Result<Expansion, Refusal> {
         let (p, q) = self.resonance;
         let mut terms: Vec<DrivenTerm> = self.scaling.force.terms.iter().map(undriven).collect();
-        let mut forced: Option<Complex> = None;
+        let mut forced: BTreeMap<u32, Complex> = BTreeMap::new();
         for driven in &self.drive.terms {
-            if self.is_hard(driven) {
-                let [cosine, sine] = self.lambda.map(Polynomial::symbol);
-                let forced = forced.get_or_insert_with(Complex::zero);
+            if let Some(lambda) = self.lambda.get(&driven.multiple).filter(|_| self.is_hard(driven)) {
+                let [cosine, sine] = lambda.map(Polynomial::symbol);
+                let forced = forced.entry(driven.multiple).or_insert_with(Complex::zero);
                 match driven.quadrature {
                     Quadrature::Cosine => forced.real = cosine,
                     Quadrature::Sine => forced.imaginary = sine.map(|number| -number),
@@ -387,7 +412,10 @@ impl<'a> Question<'a> {
             linear_frequency: self.linear_frequency.clone(),
             own: q as i32,
             detuning: Some((self.small_order(), turning)),
-            forced: forced.map(|size| (p as i32, size)),
+            forced: forced
+                .into_iter()
+                .map(|(multiple, size)| ((p * multiple) as i32, size))
+                .collect(),
             order: self.scaling.order as usize,
         };
         Ok(scaled.expand(self.names.complex))
@@ -401,28 +429,34 @@ impl<'a> Question<'a> {
 
     /// Whether a drive is a force far from resonance, which is not small.
     fn is_hard(&self, driven: &Driven) -> bool {
-        driven.is_force(self.oscillator.coordinate) && self.resonance.0 != self.resonance.1
+        let (p, q) = self.resonance;
+        driven.is_force(self.oscillator.coordinate) && p * driven.multiple != q
     }
 
     /// What `Lambda` stands for: `F/(2 (omega0^2 - Omega^2))`, of the cosines and of the sines.
     fn forced_sizes(&self) -> Result<Vec<Definition>, Refusal> {
         let mut found = vec![];
-        for (quadrature, symbol) in [Quadrature::Cosine, Quadrature::Sine].into_iter().zip(self.lambda) {
+        let symbols = self.lambda.iter().flat_map(|(multiple, symbols)| {
+            let quadratures = [Quadrature::Cosine, Quadrature::Sine].into_iter().zip(symbols);
+            quadratures.map(|(quadrature, symbol)| (*multiple, quadrature, *symbol))
+        });
+        for (multiple, quadrature, symbol) in symbols {
             let hard = self.drive.terms.iter().filter(|driven| self.is_hard(driven));
-            let factors: Vec<Expr> = hard
-                .filter(|driven| driven.quadrature == quadrature)
-                .map(|driven| driven.factor.clone())
+            let own: Vec<&Driven> = hard
+                .filter(|driven| (driven.multiple, driven.quadrature) == (multiple, quadrature))
                 .collect();
-            if factors.is_empty() {
+            let Some(first) = own.first() else {
                 continue;
-            }
+            };
             let linear = match &self.root {
                 Some(root) => Expr::from(root.symbol).integer_power(2)?,
                 None => Expr::from(&self.scaling.force.linear),
             };
-            let squared = Expr::product([self.drive.frequency.clone(), self.drive.frequency.clone()]);
+            let frequency = self.drive.frequency_of(first);
+            let squared = Expr::product([frequency.clone(), frequency]);
             let below = &Expr::from(2) * &(&linear - &squared);
             // The drive stands on the left side of the equation.
+            let factors = own.iter().map(|driven| driven.factor.clone());
             let meaning = Expr::divide(&-&Expr::sum(factors), &below)?;
             found.push(Definition { symbol, meaning });
         }
@@ -467,7 +501,7 @@ impl Question<'_> {
             .terms
             .iter()
             .all(|driven| !driven.is_force(self.oscillator.coordinate));
-        let parametric = forced.is_empty() && (p != q || no_force);
+        let parametric = forced.is_empty() && no_force;
         definitions.extend(drive.definitions.iter().cloned());
         definitions.extend(forced);
         definitions.extend(scaling.bookkeeping.clone());
@@ -482,6 +516,7 @@ impl Question<'_> {
             parametric,
             small: self.counted_small(),
             power: self.small_order(),
+            nearest: drive.nearest(self.resonance),
         });
         validity.extend(self.root.clone().map(Note::Positive));
         let derivation = match averaged {

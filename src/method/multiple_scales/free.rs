@@ -43,7 +43,7 @@ pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -
         linear_frequency: linear.frequency.clone(),
         own: 1,
         detuning: None,
-        forced: None,
+        forced: vec![],
         // The last correction of the amplitude of a limit cycle follows from one order more.
         order: order + usize::from(cycles.is_some()),
     };

@@ -30,7 +30,7 @@ pub(super) mod driven;
 mod free;
 mod names;
 mod release;
-pub(super) mod scaling;
+pub(crate) mod scaling;
 mod slow_equations;
 mod slow_times;
 mod slow_waves;

@@ -2,7 +2,8 @@
 //!
 //! In: an equation and the small parameter asked for. Out: a [`Scaling`]. A parameter whose vanishing leaves the linear
 //! oscillator marks the orders; several that have to vanish together count as equally small; otherwise the amplitude marks
-//! them, a linear damping by its square.
+//! them, a linear damping by the power at which the nonlinear terms change the frequency first: its square for quadratic and cubic terms,
+//! its fourth power for `x^5` alone.
 
 use num_traits::One;
 
@@ -30,13 +31,12 @@ pub(in crate::method) struct Scaling {
     pub(in crate::method) small_with: Vec<Symbol>,
     /// The value of a small parameter that the equation does not have.
     pub(in crate::method) bookkeeping: Option<Definition>,
-    /// A linear damping that counts as the square of the amplitude.
+    /// A linear damping that counts as a [power](Self::small_order) of the amplitude.
     pub(in crate::method) damping: Option<Expr>,
+    /// The order at which detuning, damping and a small drive enter: that at which the amplitude changes the frequency first.
+    pub(in crate::method) small_order: usize,
     pub(in crate::method) order: u32,
 }
-
-/// The order at which a linear damping enters an expansion in the amplitude.
-pub(super) const DAMPING_IN_AMPLITUDE: usize = 2;
 
 impl Scaling {
     /// A polynomial with a marker that the equation does not have as its value.
@@ -76,6 +76,11 @@ impl Scaling {
         self.marker = Some(fresh("delta", &[taken, &[marker]].concat()));
         self.marks = Some(Rational::one());
         self
+    }
+
+    /// Whether the order is below that at which detuning, damping and the nonlinear terms balance.
+    pub(super) fn is_below_balance(&self) -> bool {
+        (self.order as usize) < self.small_order
     }
 
     /// How the expansion is cut.
@@ -118,6 +123,7 @@ pub(super) fn scaling(
                     small_with: vec![],
                     bookkeeping: None,
                     damping: None,
+                    small_order: 1,
                     order,
                 });
             }
@@ -130,9 +136,15 @@ pub(super) fn scaling(
     if let Some(found) = together(oscillator, parts, options, small, [default[0], highest[0]])? {
         return Ok(found);
     }
-    let order = order_of(options, default[1], highest[1])?;
-    match (in_amplitude(oscillator, parts, order), refused) {
+    let times = order_of_shift(oscillator) / SHIFT_OF_A_CUBE;
+    let order = order_of(options, times * default[1], times * highest[1])?;
+    match (in_amplitude(oscillator, order), refused) {
         (Err(_), Some(error)) => Err(error.into()),
+        // To a lower order nothing drains a motion that is damped.
+        (Ok(found), _) if found.damping.is_some() && found.is_below_balance() => {
+            let lowest = SHIFT_OF_A_CUBE;
+            Err(Unsuited::BelowBalance { lowest }.to(Method::MultipleScales))
+        }
         (found, _) => found,
     }
 }
@@ -175,23 +187,23 @@ fn together(
         small: first.unwrap_or(joint.delta),
         small_with: parameters.collect(),
         damping: None,
+        small_order: 1,
         order,
     }))
 }
 
 /// The expansion in the amplitude, a linear damping taken out and put back as its square.
-fn in_amplitude(oscillator: &Oscillator, parts: &Parts, order: u32) -> Result<Scaling, Refusal> {
+fn in_amplitude(oscillator: &Oscillator, order: u32) -> Result<Scaling, Refusal> {
+    let small_order = order_of_balance(oscillator, order) as usize;
     let velocity = oscillator.velocity();
-    let damping = linear_damping(&parts.damping, oscillator)?;
-    let mut rest = oscillator.clone();
-    rest.force = (&oscillator.force - &damping).expand()?;
+    let (rest, damping) = without_linear_damping(oscillator)?;
     let mut force = rest.expand(SmallParameter::Amplitude, order)?;
     if !damping.is_zero() {
         let not_polynomial = || Refusal::from(OscillatorError::NotPolynomial(damping.clone().into()));
         let coefficient = damping.to_polynomial(&mut |_| None)?.ok_or_else(not_polynomial)?;
         let over = Monomial::power_of(velocity, -1);
         force.terms.push(Term {
-            order: DAMPING_IN_AMPLITUDE,
+            order: small_order,
             position: 0,
             velocity: 1,
             coefficient: coefficient.times_monomial(&over),
@@ -206,21 +218,55 @@ fn in_amplitude(oscillator: &Oscillator, parts: &Parts, order: u32) -> Result<Sc
         small_with: vec![],
         bookkeeping: None,
         damping: (!damping.is_zero()).then_some(damping),
+        small_order,
         order,
     })
 }
 
+/// The order in the amplitude at which cubic and quadratic terms change the frequency.
+const SHIFT_OF_A_CUBE: u32 = 2;
+
+/// The order in the amplitude as which damping, detuning and a small drive count: that at which the nonlinear terms change the frequency
+/// first, but to a lower order, which has none of these terms, its own.
+pub(crate) fn order_of_balance(oscillator: &Oscillator, order: u32) -> u32 {
+    order_of_shift(oscillator).min(order.max(SHIFT_OF_A_CUBE))
+}
+
+/// The order in the amplitude at which the terms of a force change the frequency first: `n - 1` of an odd power `n`, `2 (n - 1)` of an even
+/// one; that of a cubic force where no term is known that does.
+fn order_of_shift(oscillator: &Oscillator) -> u32 {
+    const HIGHEST: u32 = 8;
+    let Ok((oscillator, _)) = without_linear_damping(oscillator) else {
+        return SHIFT_OF_A_CUBE;
+    };
+    let shift = |degree: u32| match degree % 2 {
+        1 => degree - 1,
+        _ => 2 * (degree - 1),
+    };
+    for order in (SHIFT_OF_A_CUBE..=HIGHEST).step_by(2) {
+        let Ok(force) = oscillator.expand(SmallParameter::Amplitude, order) else {
+            break;
+        };
+        let degrees = force.terms.iter().map(|term| term.position + term.velocity);
+        match degrees.filter(|degree| *degree > 1).map(shift).min() {
+            Some(lowest) if lowest <= order => return lowest,
+            _ => {}
+        }
+    }
+    SHIFT_OF_A_CUBE
+}
+
 /// Whether quadratic terms are there about `x = 0`: what they do to the frequency is as large as what cubic ones do, and comes one order
 /// later where both count as equally small.
-pub(in crate::method) fn has_quadratic_terms(oscillator: &Oscillator, parts: &Parts) -> bool {
-    let expanded = in_amplitude(oscillator, parts, 1);
+pub(in crate::method) fn has_quadratic_terms(oscillator: &Oscillator) -> bool {
+    let expanded = in_amplitude(oscillator, 1);
     expanded.is_ok_and(|scaling| scaling.force.terms.iter().any(|term| term.order == 1))
 }
 
 /// Whether a quadratic term drains or feeds energy about `x = 0`, as `x*x'` does: with other quadratic terms it acts on the amplitude as
 /// a cubic damping does.
-pub(in crate::method) fn has_quadratic_damping(oscillator: &Oscillator, parts: &Parts) -> bool {
-    let expanded = in_amplitude(oscillator, parts, 1);
+pub(in crate::method) fn has_quadratic_damping(oscillator: &Oscillator) -> bool {
+    let expanded = in_amplitude(oscillator, 1);
     let drains = |term: &Term| term.order == 1 && term.velocity % 2 == 1;
     expanded.is_ok_and(|scaling| scaling.force.terms.iter().any(drains))
 }
@@ -245,6 +291,14 @@ fn linear_damping(damping: &Expr, oscillator: &Oscillator) -> Result<Expr, ExprE
         }
     }
     Expr::sum(linear).expand()
+}
+
+/// The equation without what is linear in the velocity at rest, and that.
+fn without_linear_damping(oscillator: &Oscillator) -> Result<(Oscillator, Expr), Refusal> {
+    let damping = linear_damping(&oscillator.parts()?.damping, oscillator)?;
+    let mut rest = oscillator.clone();
+    rest.force = (&oscillator.force - &damping).expand()?;
+    Ok((rest, damping))
 }
 
 fn order_of(options: &Options, default: u32, highest: u32) -> Result<u32, Refusal> {

@@ -70,8 +70,8 @@ pub(super) struct Scaled {
     pub own: i32,
     /// How much faster than `omega0/s` the fast phase turns, and at which order.
     pub detuning: Option<(usize, Polynomial)>,
-    /// A motion that a drive far from resonance forces at leading order: its harmonic `r`, and `Lambda`.
-    pub forced: Option<(i32, Complex)>,
+    /// Motions that drives far from resonance force at leading order: their harmonics `r`, and `Lambda` of each.
+    pub forced: Vec<(i32, Complex)>,
     /// The highest order.
     pub order: usize,
 }
@@ -308,10 +308,10 @@ impl Scaled {
 
     /// The forced part and its velocity, order by order.
     fn forced_motion(&self, amplitude: Amplitude) -> (Vec<Wave>, Vec<Wave>) {
-        let Some((harmonic, size)) = &self.forced else {
+        if self.forced.is_empty() {
             return (vec![], vec![]);
-        };
-        let wave = mirrored(Wave::from([(*harmonic, size.clone())]), amplitude);
+        }
+        let wave = mirrored(self.forced.iter().cloned().collect(), amplitude);
         let still = Expansion {
             displacement: vec![],
             rates: vec![Complex::zero(); self.order + 1],

@@ -3,6 +3,7 @@
 //! - Duffing, pendulum, van der Pol: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapters 2 and 3.
 
 mod driven;
+mod drives;
 mod free;
 
 use lindstedt::Oscillator;

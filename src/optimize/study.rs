@@ -332,6 +332,9 @@ pub fn optimize_on(
     crate::parallel::on_threads(threads, || optimize(question, known, watch))
 }
 
+/// Population and generations of a search for the constraints alone, at least.
+const ENOUGH: [usize; 2] = [60, 100];
+
 /// Why nothing was found.
 fn nothing(question: &Question, space: &Space, watch: &Watch, complete: bool) -> OptimizeError {
     if !complete {
@@ -376,10 +379,15 @@ fn nothing(question: &Question, space: &Space, watch: &Watch, complete: bool) ->
             false => f64::INFINITY,
         })
     };
-    let options = Options {
+    let mut options = Options {
         penalty: Penalty::Death,
         ..question.genetic
     };
+    if question.main_mass.is_none() {
+        // Closed forms cost little: enough of them to say that there is nothing.
+        options.population = options.population.max(ENOUGH[0]);
+        options.generations = options.generations.max(ENOUGH[1]);
+    }
     let run = search(
         space,
         evaluate,

@@ -271,7 +271,7 @@ fn limits_beside_a_main_mass_are_those_of_its_motion() {
 #[test]
 fn designs_that_keep_hard_limits_are_found() {
     for limit in ["max_peak_force = 30", "max_impacts = 9", "max_peak_pressure = 5e7"] {
-        let text = format!("[limits]\n{limit}\n[genetic]\nruns = 2\npopulation = 40\ngenerations = 60\n");
+        let text = format!("[limits]\n{limit}\n[genetic]\nruns = 1\npopulation = 30\ngenerations = 40\n");
         let found = study(asked(&text));
         let best = found.best().expect("a design");
         let motion = judged(&found.question, &best.design.point);

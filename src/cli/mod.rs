@@ -468,12 +468,16 @@ fn within_limits(command: Command, timeout: Option<f64>) -> (Option<Worked>, Opt
     // Without a handler an interrupt just ends the program, as it would any other.
     drop(handler);
     // The work has a thread of its own so that a time limit can end it, wherever it is.
+    let limit = timeout.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
+    // No time at all is up before the work begins, whichever of the two threads is run first.
+    if limit.is_some_and(|limit| limit.is_zero()) {
+        STOP.store(true, Ordering::Relaxed);
+    }
     let started = Instant::now();
     let worker = std::thread::spawn(move || {
         let outcome = std::panic::catch_unwind(|| command.run());
         let _ = sender.send(Message::Done(outcome.ok()));
     });
-    let limit = timeout.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
     let first = match limit {
         None => receiver.recv().map_err(|_| RecvTimeoutError::Disconnected),
         Some(limit) => receiver.recv_timeout(limit),

@@ -150,7 +150,10 @@ fn search(
 fn refused(error: OptimizeError) -> Failure {
     let help = match &error {
         OptimizeError::NoRest { .. } => Some("raise `duration` in [run], or damp more"),
-        OptimizeError::NoFeasible { .. } => Some("loosen [limits], or give the search more generations"),
+        OptimizeError::NoFeasible { exists: true, .. } => {
+            Some("give penalty = \"feasible-first\" in [genetic], or the search more generations")
+        }
+        OptimizeError::NoFeasible { exists: false, .. } => Some("loosen [limits], or give the search more generations"),
         OptimizeError::Options(OptionsError::Budget { .. }) => Some("raise --budget, or lower --runs"),
         OptimizeError::Stopped => Some("give it more time"),
         _ => None,

@@ -20,9 +20,9 @@ use super::dissipation::{ContactDamping, Dissipation};
 use super::hertz;
 use super::model::{Model, Start};
 use super::parameter::Parameter;
-use super::si::{YieldCheck, greatest};
+use super::si::YieldCheck;
 use super::simulate::{SimulationError, simulate};
-use super::simulation::{Contact, Integrator, NoRest, Settings, Simulation, Stop};
+use super::simulation::{CLOCK, Contact, Integrator, NoRest, Settings, Simulation, Stop};
 use super::units::{FIRST_YIELD, Modulus, Units};
 
 /// The elastic moduli of the paper's Table 2, Pa: inputs of its study, as printed.
@@ -177,17 +177,24 @@ pub fn course(
         keep_path: false,
         ..*settings
     };
-    let motion = simulate(model, start, integrator, &settings)?;
-    let rest_time = motion.rest().time;
-    let before_rest = |impact: &&Contact| rest_time.is_err() || rest_time.is_ok_and(|rest| impact.entry_time < rest);
-    let impacts: Vec<Contact> = motion.impacts.iter().filter(before_rest).copied().collect();
-    let energy = |impact: &Contact| Some(model.swing_energy(model.barrier(impact.side)?, impact.speed_out?));
-    Ok(Course {
-        rest_time,
-        energies: impacts.iter().filter_map(energy).collect(),
-        impacts,
-        stop: motion.stop,
-    })
+    Ok(Course::from(&simulate(model, start, integrator, &settings)?))
+}
+
+impl From<&Simulation> for Course {
+    fn from(motion: &Simulation) -> Self {
+        let model = &motion.model;
+        let rest_time = motion.rest().time;
+        let before_rest =
+            |impact: &&Contact| rest_time.is_err() || rest_time.is_ok_and(|rest| impact.entry_time < rest);
+        let impacts: Vec<Contact> = motion.impacts.iter().filter(before_rest).copied().collect();
+        let energy = |impact: &Contact| Some(model.swing_energy(model.barrier(impact.side)?, impact.speed_out?));
+        Self {
+            rest_time,
+            energies: impacts.iter().filter_map(energy).collect(),
+            impacts,
+            stop: motion.stop,
+        }
+    }
 }
 
 /// The first contact with a barrier.
@@ -407,9 +414,6 @@ fn row(question: &MaterialQuestion, units: &Units, material: &Material) -> Resul
     })
 }
 
-/// A contact shorter than this part of the time at which it begins has lost digits of its duration to the clock.
-const CLOCK: f64 = 1e-6;
-
 /// The numbers of a first contact in SI units; the greatest force is looked for on the motion itself. Of one of a chain, or too short for the
 /// clock, duration and force are those of the closed form, in which the swing's own force is left out: it has no time to act.
 fn first_contact(
@@ -419,9 +423,7 @@ fn first_contact(
     question: &MaterialQuestion,
     units: &Units,
 ) -> Result<Option<FirstContact>, SimulationError> {
-    let (Some(exit), Some(restitution), Some(barrier)) =
-        (impact.exit_time, impact.restitution, model.barrier(impact.side))
-    else {
+    let (Some(exit), Some(restitution)) = (impact.exit_time, impact.restitution) else {
         return Ok(None);
     };
     let closed = question.integrator == Integrator::Chain || exit - impact.entry_time < CLOCK * exit;
@@ -435,14 +437,12 @@ fn first_contact(
         ..question.settings
     };
     let motion = simulate(model, start, question.integrator, &until)?;
-    let sign = impact.side.sign();
-    let force = |t: f64| match motion.path.at(t) {
-        Some((x, velocity)) => model.contact(sign * (x - barrier), sign * velocity),
-        None => 0.0,
-    };
     let (duration, peak_force) = match closed_form {
         Some(contact) => (contact.duration, contact.peak_force),
-        None => (exit - impact.entry_time, greatest(force, impact.entry_time, exit)),
+        None => match motion.peak_force(impact) {
+            Some(force) => (exit - impact.entry_time, force),
+            None => return Ok(None),
+        },
     };
     let metres = units.length * impact.penetration;
     let elastic = units.force() * hertz::force(model.gamma, impact.penetration);

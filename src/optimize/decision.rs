@@ -3,17 +3,19 @@
 //! ```text
 //! elasticity      (p/T) dT/dp, by steps of 1 % of p, of motions that are integrated
 //! alone           how far a variable may go, the others held, before the objective is 1 % worse
-//!   to both ends      flat: it says nothing
-//!   to one end only   corner: the limit decides, and moving it moves the best design
-//!   to neither        limit, where a constraint stops it, else trade: something is lost on either side
+//! flat            its whole range is within 1 %: it says nothing
+//! lower, upper    alone it may go to that end, and nothing on its way is better than the end: the limit decides
+//! limit           a constraint stops it
+//! trade           something is lost on either side
 //! share           the part of the box within 1 % of the best
 //! ```
 //!
 //! With a density the mass follows the radius, and the radius the mass where that is moved.
 
+use std::cell::Cell;
 use std::f64::consts::PI;
 
-use super::design::Route;
+use super::design::{Design, Route};
 use super::objective::Objective;
 use super::question::Question;
 use crate::genetic::{Space, generator};
@@ -82,6 +84,8 @@ pub struct Ends {
     pub seconds: [f64; 2],
     /// The same in units of 1/omega.
     pub dimensionless: [f64; 2],
+    /// The best lengths of those that were tried from one limit to the other, m: in seconds and in units of 1/omega.
+    pub best: [f64; 2],
 }
 
 /// What decides the best design.
@@ -89,6 +93,12 @@ pub struct Ends {
 pub struct Decision {
     /// The variables, in their order.
     pub sensitivities: Vec<Sensitivity>,
+    /// The objective of the best design as the others are judged here: by closed forms where it has them.
+    pub value: f64,
+    /// The least objective of all designs that were tried here and keep the constraints.
+    pub least: f64,
+    /// Designs that were drawn from the whole box and from what is as good alone.
+    pub drawn: usize,
     /// The part of the box within 1 % of the best.
     pub share: f64,
     /// Least and greatest value of every variable among the designs within 1 %.
@@ -103,6 +113,9 @@ pub struct Decision {
     pub materials: Vec<Option<f64>>,
 }
 
+/// Values that differ by less than this part are the same.
+const SAME: f64 = 1e-6;
+
 /// Designs drawn from the whole box, and from the box of what is as good alone.
 const DRAWN: [usize; 2] = [4000, 2000];
 
@@ -113,8 +126,9 @@ const STREAM: u64 = 1 << 40;
 const STEPS: i32 = 40;
 
 impl Decision {
-    /// What decides this point, the best of its box.
-    pub(super) fn of(question: &Question, space: &Space, best: &[f64]) -> Self {
+    /// What decides this design, judged by integration, the best of its box.
+    pub(super) fn of(question: &Question, space: &Space, design: &Design) -> Self {
+        let best: &[f64] = &design.point;
         let probe = Probe {
             question,
             space,
@@ -123,8 +137,11 @@ impl Decision {
                 Ok(design) if design.integrated => 10,
                 _ => 1,
             },
+            least: Cell::new(f64::INFINITY),
         };
-        let level = probe.value(best).unwrap_or(f64::INFINITY) * (1.0 + WITHIN);
+        let value = probe.value(best).unwrap_or(f64::INFINITY);
+        probe.least.set(value);
+        let level = value * (1.0 + WITHIN);
         let sensitivities: Vec<Sensitivity> = (0..question.variables.len())
             .map(|index| probe.sensitivity(best, index, level))
             .collect();
@@ -148,9 +165,11 @@ impl Decision {
         Self {
             extents: extents.collect(),
             share,
+            drawn: probe.drawn().into_iter().sum(),
             points,
-            active: probe.active(best),
+            active: probe.active(design),
             ends: probe.ends(best),
+            value,
             materials: (0..question.materials.len())
                 .map(|number| {
                     let mut point = best.to_vec();
@@ -161,6 +180,7 @@ impl Decision {
                 })
                 .collect(),
             sensitivities,
+            least: probe.least.get(),
         }
     }
 }
@@ -171,6 +191,8 @@ struct Probe<'a> {
     space: &'a Space,
     /// How many times fewer must do: some tenfold for designs without closed forms, a hundredfold with a main mass, which has none.
     fewer: usize,
+    /// The least objective so far of a design that keeps the constraints.
+    least: Cell<f64>,
 }
 
 impl Probe<'_> {
@@ -187,13 +209,17 @@ impl Probe<'_> {
 
     /// The objective of a point that keeps the constraints.
     fn feasible(&self, point: &[f64]) -> Option<f64> {
-        let design = self
-            .question
-            .follow(point, Route::Chain, self.question.needs_contact())
-            .ok()?;
-        let evaluation = self.question.evaluation(&design);
-        let tolerance = self.question.genetic.constraint_tolerance;
-        evaluation.is_feasible(tolerance).then(|| evaluation.value())
+        self.judged(point)[1]
+    }
+
+    /// The objective of a point, constraints aside, and where it keeps them.
+    fn judged(&self, point: &[f64]) -> [Option<f64>; 2] {
+        let evaluation = self.question.worth(point, self.least.get(), &mut 0);
+        let value = Some(evaluation.value()).filter(|value| value.is_finite());
+        let kept = value.filter(|_| evaluation.is_feasible(self.question.genetic.constraint_tolerance));
+        self.least
+            .set(kept.map_or(self.least.get(), |kept| self.least.get().min(kept)));
+        [value, kept]
     }
 
     /// The same point on the surface of the density, where there is one; nothing where that leaves the box.
@@ -252,7 +278,8 @@ impl Probe<'_> {
                 if good(next).is_none() {
                     // The place between by halving.
                     let (mut inside, mut outside) = (last, next);
-                    for _ in 0..30 {
+                    let halvings = if self.fewer > 1 { 12 } else { 30 };
+                    for _ in 0..halvings {
                         let middle = 0.5 * (inside + outside);
                         match good(middle) {
                             Some(_) => inside = middle,
@@ -266,34 +293,41 @@ impl Probe<'_> {
             limit
         };
         let alone = limits.map(reach);
-        let role = match (alone[0] == limits[0], alone[1] == limits[1]) {
-            (true, true) => Role::Flat,
-            (true, false) => Role::Lower,
-            (false, true) => Role::Upper,
-            (false, false) => {
-                // Just beyond what is as good: worse, or forbidden?
-                let forbidden = alone.into_iter().zip(limits).any(|(end, limit)| {
-                    let beyond = end + 1e-3 * (limit - end);
-                    let point = self.moved(best, index, beyond);
-                    point.is_none_or(|point| self.value(&point).is_some_and(|objective| objective <= level))
-                });
-                if forbidden { Role::Limit } else { Role::Trade }
-            }
-        };
         // With a density some values are not to be had.
-        let whole: Option<Vec<f64>> = limits
-            .into_iter()
-            .flat_map(|limit| self.way(value, limit))
-            .filter_map(|value| Some(self.value(&self.moved(best, index, value)?)))
+        let tried = limits.into_iter().flat_map(|limit| self.way(value, limit));
+        let tried = tried.filter_map(|value| self.moved(best, index, value));
+        let tried: Vec<[Option<f64>; 2]> = tried.map(|point| self.judged(&point)).collect();
+        let whole: Option<Vec<f64>> = tried
+            .iter()
+            .map(|[value, _]| *value)
             .chain([self.value(best)])
             .collect();
         let range = whole.map(|values| {
             let least = values.iter().copied().fold(f64::INFINITY, f64::min);
             [least, values.into_iter().fold(f64::NEG_INFINITY, f64::max)]
         });
+        let kept = tried.iter().filter_map(|[_, kept]| *kept);
+        let least = kept.chain(self.value(best)).fold(f64::INFINITY, f64::min);
+        // Whether the end is as good as anything on the way.
+        let is_end = |end: usize| {
+            let point = self.moved(best, index, limits[end]);
+            let at_end = point.and_then(|point| self.feasible(&point));
+            alone[end] == limits[end] && at_end.is_some_and(|at_end| at_end <= least * (1.0 + SAME))
+        };
+        // Just beyond what is as good: worse, or forbidden?
+        let is_forbidden = |end: usize| {
+            let beyond = alone[end] + 1e-3 * (limits[end] - alone[end]);
+            alone[end] != limits[end]
+                && self
+                    .moved(best, index, beyond)
+                    .is_none_or(|point| self.value(&point).is_some_and(|objective| objective <= level))
+        };
         let role = match range {
             Some([least, greatest]) if greatest <= least * (1.0 + WITHIN) => Role::Flat,
-            _ => role,
+            _ if is_end(0) => Role::Lower,
+            _ if is_end(1) => Role::Upper,
+            _ if is_forbidden(0) || is_forbidden(1) => Role::Limit,
+            _ => Role::Trade,
         };
         Sensitivity {
             parameter,
@@ -332,12 +366,17 @@ impl Probe<'_> {
         Some((above / below).ln() / (ends[1] / ends[0]).ln()).filter(|slope| slope.is_finite())
     }
 
+    /// How many designs are drawn from the whole box, and from what is as good alone.
+    fn drawn(&self) -> [usize; 2] {
+        DRAWN.map(|count| count / self.fewer)
+    }
+
     /// The part of the box within the level, and designs there.
     fn share(&self, near: &[[f64; 2]], level: f64) -> (f64, Vec<Vec<f64>>) {
         let mut points = Vec::new();
         let mut shares = [0.0; 2];
         let whole = self.space.bounds();
-        let drawn = DRAWN.map(|count| count / self.fewer);
+        let drawn = self.drawn();
         for (turn, bounds) in [whole, near].into_iter().enumerate() {
             let Ok(space) = Space::new(bounds.to_vec()) else {
                 continue;
@@ -363,11 +402,8 @@ impl Probe<'_> {
         }
     }
 
-    fn active(&self, best: &[f64]) -> Vec<String> {
-        let Ok(design) = self.question.follow(best, Route::Chain, self.question.needs_contact()) else {
-            return vec![];
-        };
-        let evaluation = self.question.evaluation(&design);
+    fn active(&self, best: &Design) -> Vec<String> {
+        let evaluation = self.question.evaluation(best);
         let words = self.question.constraints();
         let mut active: Vec<String> = Vec::new();
         let limits = self.question.limits.len();
@@ -393,20 +429,36 @@ impl Probe<'_> {
             return None;
         }
         let lengths = [variables[index].lower, variables[index].upper];
-        let at = |length: f64| {
+        let both = |length: f64| {
             let mut point = best.to_vec();
             point[index] = length;
-            let design = self.question.follow(&point, Route::Chain, false).ok()?;
-            Some([
-                Objective::RestTime.value(&design)?,
-                Objective::DimensionlessRestTime.value(&design)?,
-            ])
+            let design = self
+                .question
+                .follow(&point, Route::Chain, self.question.needs_contact())
+                .ok()?;
+            let units = [Objective::RestTime, Objective::DimensionlessRestTime];
+            let [seconds, dimensionless] = units.map(|objective| objective.value(&design));
+            let tolerance = self.question.genetic.constraint_tolerance;
+            let keeps = self.question.evaluation(&design).violation(tolerance) == 0.0;
+            Some(([seconds?, dimensionless?], keeps))
         };
-        let [short, long] = [at(lengths[0])?, at(lengths[1])?];
+        let [(short, _), (long, _)] = [both(lengths[0])?, both(lengths[1])?];
+        let mut least = [f64::INFINITY; 2];
+        let mut best_lengths = [best[index]; 2];
+        let tried = lengths.into_iter().flat_map(|limit| self.way(best[index], limit));
+        for length in lengths.into_iter().chain([best[index]]).chain(tried) {
+            let Some((times, true)) = both(length) else { continue };
+            for unit in 0..2 {
+                if times[unit] < least[unit] * (1.0 - SAME) {
+                    (least[unit], best_lengths[unit]) = (times[unit], length);
+                }
+            }
+        }
         Some(Ends {
             lengths,
             seconds: [short[0], long[0]],
             dimensionless: [short[1], long[1]],
+            best: best_lengths,
         })
     }
 }

@@ -1,12 +1,14 @@
 //! One design: its motion until it rests, and the numbers that a search asks for.
 //!
-//! The motion is the chain of closed forms, a few microseconds; where it has none, as for a heavily damped swing, it is integrated.
+//! The motion is the chain of closed forms, a few microseconds; where it has none, as for a heavily damped swing, it is integrated. A pendulum
+//! that a main mass carries is followed together with it, always by integration.
 
 use super::question::Question;
 use crate::impact::contact::hunt_crossley::{peak_force, restitution};
-use crate::impact::primary::{PrimaryCase, PrimarySettings, simulate_primary};
+use crate::impact::primary::{MainMass, PrimaryCase, PrimarySettings, simulate_primary};
 use crate::impact::{
-    Case, Integrator, Model, NoRest, Parameter, Settings, SimulationError, Start, Units, course, hertz,
+    Case, Contact, Course, Integrator, Model, NoRest, Parameter, Settings, Simulation, SimulationError, Start, Units,
+    course, hertz, simulate,
 };
 
 /// How a design is judged.
@@ -18,15 +20,40 @@ pub enum Route {
     Integration,
 }
 
-/// The contact that is touched fastest.
+/// The greatest numbers of all contacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HardestContact {
     /// The greatest force, that of the damping included, N.
     pub force: f64,
     /// The pressure of Hertz at the greatest depth, Pa.
     pub pressure: f64,
-    /// The coefficient of restitution.
-    pub restitution: f64,
+    /// The coefficient of restitution of the contact with the greatest force; `None` where it did not begin with a touch or did not end.
+    pub restitution: Option<f64>,
+}
+
+impl HardestContact {
+    /// The greatest of these contacts: each its force in units of m g, its depth in rad, and its restitution. `None` where there is none.
+    fn from_contacts(
+        model: &Model,
+        units: &Units,
+        contacts: impl Iterator<Item = (f64, f64, Option<f64>)>,
+    ) -> Option<Self> {
+        contacts.fold(None, |hardest: Option<Self>, (force, depth, restitution)| {
+            let elastic = units.force() * hertz::force(model.gamma, depth);
+            let own = Self {
+                force: units.force() * force,
+                pressure: units.pressure(elastic, units.length * depth).unwrap_or(0.0),
+                restitution,
+            };
+            Some(match hardest {
+                None => own,
+                Some(other) => Self {
+                    pressure: own.pressure.max(other.pressure),
+                    ..if own.force > other.force { own } else { other }
+                },
+            })
+        })
+    }
 }
 
 /// A design that was followed until it rests.
@@ -42,14 +69,14 @@ pub struct Design {
     pub model: Model,
     /// What its numbers are in SI units.
     pub units: Units,
-    /// When it rests, in units of 1/omega.
+    /// The rest time of the pendulum, in units of 1/omega.
     pub rest_time: Result<f64, NoRest>,
-    /// The contacts until then.
+    /// The contacts until it rests; beside a main mass until that rests. All of them where it does not.
     pub impacts: usize,
-    /// The hardest of them; nothing where none was, or nobody asked for it.
+    /// The hardest of them; `None` where there was none, or it was not asked for.
     pub hardest: Option<HardestContact>,
-    /// When the main mass rests, s; nothing where it never does, or nobody asked for it.
-    pub primary_rest_time: Option<f64>,
+    /// The rest time of the main mass, s; `None` without one.
+    pub primary_rest_time: Option<Result<f64, NoRest>>,
     /// Whether it was integrated.
     pub integrated: bool,
 }
@@ -83,7 +110,7 @@ impl Question {
         self.materials.is_empty() || self.materials.iter().any(|material| material.damping.is_none())
     }
 
-    /// Follows a design until it rests.
+    /// Follows a design until it rests; `contact` asks for the hardest contact too.
     ///
     /// # Errors
     /// As [`simulate`](crate::impact::simulate()), and [`Case::motion`] in words.
@@ -99,32 +126,18 @@ impl Question {
             sphere_yield: self.sphere_yield,
             barrier_yield: None,
         };
-        let settings = Settings {
-            stop_at_rest: true,
-            keep_path: false,
-            ..self.settings
+        let motion = DesignMotion {
+            question: self,
+            model,
+            start,
+            units,
+            route,
+            contact,
         };
-        let (followed, integrated) = match route {
-            Route::Integration => (course(&model, start, Integrator::Taylor, &settings), true),
-            Route::Chain => match course(&model, start, Integrator::Chain, &settings) {
-                Err(SimulationError::Chain(_)) => (course(&model, start, Integrator::Taylor, &settings), true),
-                followed => (followed, false),
-            },
+        let followed = match self.main_mass {
+            Some(main_mass) => motion.carried(&main_mass)?,
+            None => motion.on_fixed_pivot().map_err(|error| error.to_string())?,
         };
-        let followed = followed.map_err(|error| error.to_string())?;
-        let fastest = followed
-            .impacts
-            .iter()
-            .max_by(|one, other| one.speed_in.total_cmp(&other.speed_in));
-        let hardest = fastest.filter(|_| contact).and_then(|impact| {
-            let ratio = model.mu / model.gamma;
-            let elastic = units.force() * hertz::force(model.gamma, impact.penetration);
-            Some(HardestContact {
-                force: units.force() * peak_force(1.5, model.gamma, ratio, impact.speed_in)?,
-                pressure: units.pressure(elastic, units.length * impact.penetration)?,
-                restitution: restitution(ratio * impact.speed_in).ok()?,
-            })
-        });
         Ok(Design {
             point: point.to_vec(),
             material,
@@ -132,31 +145,11 @@ impl Question {
             model,
             units,
             rest_time: followed.rest_time,
-            impacts: followed.impacts.len(),
-            hardest,
-            primary_rest_time: self.primary_rest_time(model, &units),
-            integrated,
+            impacts: followed.impacts,
+            hardest: followed.hardest,
+            primary_rest_time: followed.primary_rest_time,
+            integrated: followed.integrated,
         })
-    }
-
-    /// When the main mass rests that carries this pendulum, s: always by integration, for it has no chain. The pendulum hangs at rest when
-    /// the main mass is let go.
-    fn primary_rest_time(&self, model: Model, units: &Units) -> Option<f64> {
-        let main_mass = self.main_mass?;
-        let [displacement, speed] = main_mass.start(units);
-        let case = PrimaryCase {
-            primary: main_mass.primary(units),
-            model,
-            start: [0.0, 0.0, displacement, speed],
-        };
-        let settings = PrimarySettings {
-            duration: self.settings.duration,
-            stop_at_rest: true,
-            interrupt: self.settings.interrupt,
-            ..PrimarySettings::default()
-        };
-        let motion = simulate_primary(case, &settings).ok()?;
-        Some(motion.rest_time().ok()? * units.time())
     }
 
     /// The paper's Table 5 as a point of this box, in it or not; nothing where materials are tried.
@@ -176,5 +169,133 @@ impl Question {
     /// The equation and the start of a point of the box.
     pub fn motion_of(&self, point: &[f64]) -> Option<(Model, Start)> {
         self.case_of(point).0.motion().ok()
+    }
+}
+
+/// The motion of a design that is to be followed.
+struct DesignMotion<'a> {
+    question: &'a Question,
+    model: Model,
+    start: Start,
+    units: Units,
+    route: Route,
+    contact: bool,
+}
+
+/// The numbers of a motion that was followed.
+struct Followed {
+    rest_time: Result<f64, NoRest>,
+    impacts: usize,
+    hardest: Option<HardestContact>,
+    primary_rest_time: Option<Result<f64, NoRest>>,
+    integrated: bool,
+}
+
+impl DesignMotion<'_> {
+    fn on_fixed_pivot(&self) -> Result<Followed, SimulationError> {
+        let settings = Settings {
+            stop_at_rest: true,
+            keep_path: false,
+            ..self.question.settings
+        };
+        let by_chain = match self.route {
+            Route::Integration => None,
+            Route::Chain => match course(&self.model, self.start, Integrator::Chain, &settings) {
+                Err(SimulationError::Chain(_)) => None,
+                found => Some(found?),
+            },
+        };
+        let integrated = by_chain.is_none();
+        let (course, hardest) = match by_chain {
+            Some(course) => {
+                let hardest = self.contact.then(|| self.fastest_in_closed_form(&course));
+                (course, hardest)
+            }
+            None => {
+                let settings = Settings {
+                    keep_path: self.contact,
+                    ..settings
+                };
+                let motion = simulate(&self.model, self.start, Integrator::Taylor, &settings)?;
+                let course = Course::from(&motion);
+                let hardest = self.contact.then(|| self.hardest_of_motion(&motion, &course));
+                (course, hardest)
+            }
+        };
+        Ok(Followed {
+            rest_time: course.rest_time,
+            impacts: course.impacts.len(),
+            hardest: hardest.flatten(),
+            primary_rest_time: None,
+            integrated,
+        })
+    }
+
+    /// Force and restitution of a contact in closed form: the swing's own forces are left out.
+    fn in_closed_form(&self, contact: &Contact) -> Option<(f64, f64, Option<f64>)> {
+        let ratio = self.model.mu / self.model.gamma;
+        let force = peak_force(1.5, self.model.gamma, ratio, contact.speed_in)?;
+        Some((force, contact.penetration, restitution(ratio * contact.speed_in).ok()))
+    }
+
+    /// The contact that is touched fastest, in closed form.
+    fn fastest_in_closed_form(&self, course: &Course) -> Option<HardestContact> {
+        let faster = |one: &&Contact, other: &&Contact| one.speed_in.total_cmp(&other.speed_in);
+        let fastest = course.impacts.iter().max_by(faster)?;
+        let contacts = self.in_closed_form(fastest).into_iter();
+        HardestContact::from_contacts(&self.model, &self.units, contacts)
+    }
+
+    /// The hardest contact of a motion that was integrated. Of one too short for the clock the force is that of the closed form: the swing's own
+    /// forces have no time to act.
+    fn hardest_of_motion(&self, motion: &Simulation, course: &Course) -> Option<HardestContact> {
+        let contacts = course
+            .impacts
+            .iter()
+            .filter_map(|contact| match motion.peak_force(contact) {
+                Some(force) => Some((force, contact.penetration, contact.restitution)),
+                None => self
+                    .in_closed_form(contact)
+                    .map(|(force, depth, _)| (force, depth, contact.restitution)),
+            });
+        HardestContact::from_contacts(&self.model, &self.units, contacts)
+    }
+
+    /// The pendulum on the main mass that carries it: always by integration, for the two have no chain. It ends when the main mass rests, unless the
+    /// rest of the pendulum is asked for too.
+    fn carried(&self, main_mass: &MainMass) -> Result<Followed, String> {
+        let [displacement, speed] = main_mass.start(&self.units);
+        let case = PrimaryCase {
+            primary: main_mass.primary(&self.units),
+            model: self.model,
+            start: [self.start.x, self.start.velocity, displacement, speed],
+        };
+        let settings = &self.question.settings;
+        let settings = PrimarySettings {
+            duration: settings.duration,
+            phase_limit: settings.maximum_steps,
+            stop_at_rest: !(self.question.needs_pendulum_rest() || self.route == Route::Integration && self.contact),
+            interrupt: settings.interrupt,
+            ..PrimarySettings::default()
+        };
+        let motion = simulate_primary(case, &settings).map_err(|error| error.to_string())?;
+        let rest = motion.rest_time();
+        let impacts = motion.impacts.iter();
+        let impacts = impacts.filter(|impact| rest.is_err() || rest.is_ok_and(|rest| impact.entry < rest));
+        let hardest = self.contact.then(|| {
+            let contacts = impacts.clone().map(|impact| {
+                let restitution = impact.speed_out.map(|out| out / impact.speed_in);
+                let restitution = restitution.filter(|restitution| restitution.is_finite());
+                (motion.peak_force(impact), impact.penetration, restitution)
+            });
+            HardestContact::from_contacts(&self.model, &self.units, contacts)
+        });
+        Ok(Followed {
+            rest_time: motion.pendulum_rest_time(),
+            impacts: impacts.count(),
+            hardest: hardest.flatten(),
+            primary_rest_time: Some(rest.map(|rest| rest * self.units.time())),
+            integrated: true,
+        })
     }
 }

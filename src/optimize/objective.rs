@@ -63,7 +63,7 @@ impl Objective {
                 Some(design.impacts as f64)
             }),
             Self::PrimaryRestTime => ("primary_rest_time", "s", "the rest time of the main mass", |design| {
-                design.primary_rest_time
+                design.primary_rest_time?.ok()
             }),
         }
     }

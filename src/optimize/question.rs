@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use super::design::{Design, Route};
 use super::objective::Objective;
+use crate::decimal::{decimal, significant};
 use crate::genetic::{Evaluation, Options, OptionsError, Space, SpaceError};
 use crate::impact::primary::MainMass;
 use crate::impact::{
@@ -146,10 +147,16 @@ pub enum OptimizeError {
         reason: String,
     },
     /// No design that keeps the constraints.
-    #[error("no design was found in this box that comes to rest in the time allowed and keeps {constraints}")]
+    #[error(
+        "no design was found in this box that comes to rest in the time allowed and keeps {constraints}: {nearest}"
+    )]
     NoFeasible {
         /// The constraints in words.
         constraints: String,
+        /// What a search for the constraints alone found, in words.
+        nearest: String,
+        /// Whether that keeps them.
+        exists: bool,
     },
     /// Records of another search.
     #[error("{0}")]
@@ -250,6 +257,55 @@ impl Question {
                 .any(Objective::is_of_contact)
     }
 
+    /// Whether the rest of the pendulum counts.
+    pub(super) fn needs_pendulum_rest(&self) -> bool {
+        let limited = self.limits.iter().map(|limit| limit.objective);
+        let mut counting = self.objectives.iter().copied().chain(limited);
+        counting.any(Objective::is_rest_time)
+    }
+
+    /// The reason for which a design has no value of an objective; `None` where it has all of them.
+    pub(super) fn missing_value(&self, design: &Design) -> Option<String> {
+        let missing = self
+            .objectives
+            .iter()
+            .find(|objective| objective.value(design).is_none())?;
+        let rest = match missing.is_of_main_mass() {
+            true => design.primary_rest_time.unwrap_or(design.rest_time),
+            false => design.rest_time,
+        };
+        Some(rest.err().map_or_else(
+            || format!("{} has no finite value", missing.meaning()),
+            |reason| reason.to_string(),
+        ))
+    }
+
+    /// The constraints that a design breaks, in words: `max_impacts = 9 (10)`.
+    pub fn broken(&self, design: &Design) -> Vec<String> {
+        let evaluation = self.evaluation(design);
+        let words = self.constraints();
+        let mut broken = Vec::new();
+        for (index, limit) in self.limits.iter().enumerate() {
+            if evaluation.inequalities.get(index).is_some_and(|excess| *excess > 0.0) {
+                let value = limit.objective.value(design).map_or("no value".to_owned(), decimal);
+                broken.push(format!("{} ({value})", words[index]));
+            }
+        }
+        if let Some(off) = evaluation.equalities.first()
+            && off.abs() > self.genetic.constraint_tolerance
+        {
+            let words = words.get(self.limits.len()).cloned().unwrap_or_default();
+            broken.push(format!("{words} (m is {} times that)", significant(1.0 + off, 4)));
+        }
+        if let Some(excess) = evaluation.inequalities.get(self.limits.len())
+            && *excess > 0.0
+        {
+            let words = words.last().cloned().unwrap_or_default();
+            broken.push(format!("{words} ({} times that)", significant(1.0 + excess, 4)));
+        }
+        broken
+    }
+
     /// The lowest stated yield limit of the bodies of a design, Pa.
     pub fn yield_limit(&self, design: &Design) -> Option<f64> {
         let barrier = match design.material {
@@ -310,4 +366,4 @@ impl Question {
 }
 
 /// A constraint is never broken by more: infinities would have no order.
-const LARGEST_EXCESS: f64 = 1e6;
+pub(super) const LARGEST_EXCESS: f64 = 1e100;

@@ -6,20 +6,21 @@
 use super::decision::Decision;
 use super::design::{Design, Route};
 use super::objective::Objective;
-use super::question::{OptimizeError, Question};
+use super::question::{LARGEST_EXCESS, OptimizeError, Question};
+use crate::decimal::significant;
 use crate::genetic::{
-    Evaluation, Individual, Options, Run, Space, Stop, crowding, differential_evolution, generator, non_dominated,
-    random_search, search, search_front,
+    Evaluation, Individual, Options, Penalty, Run, Space, Stop, crowding, differential_evolution, generator,
+    non_dominated, random_search, search, search_front,
 };
 use crate::impact::hertz;
 use crate::parallel::each;
 
-/// A design that a run found, by closed forms.
+/// A design that a run found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
     /// The point of the box.
     pub point: Vec<f64>,
-    /// The objectives there.
+    /// The objectives there as the search has them: by closed forms, by integration where there are none.
     pub values: Vec<f64>,
 }
 
@@ -37,7 +38,7 @@ pub struct SearchRun {
     pub generations: usize,
     /// Designs that were followed.
     pub evaluations: usize,
-    /// Those of them that have no closed form and were integrated.
+    /// Those of them that were integrated: they have no closed form, or would be the best if they keep the constraints.
     pub integrated: usize,
     /// Why it ended.
     pub stop: Stop,
@@ -126,13 +127,13 @@ impl Rival {
 pub struct Finalist {
     /// The run that found it.
     pub run: usize,
-    /// Its objectives by closed forms.
+    /// Its objectives by closed forms, where it has them; else by integration.
     pub by_chain: Vec<f64>,
     /// The design by integration.
     pub design: Design,
     /// Its objectives by integration; infinite where it has none.
     pub values: Vec<f64>,
-    /// Whether it keeps the constraints by integration as well, with 1 % to spare for what closed forms leave out.
+    /// Whether it rests and keeps the constraints by integration; no front has a design that does not.
     pub feasible: bool,
 }
 
@@ -159,8 +160,8 @@ pub struct Study {
 /// The best of so many runs are judged again.
 const FINALISTS: usize = 10;
 
-/// What closed forms may be off where a constraint is judged again.
-const SPARE: f64 = 0.01;
+/// Closed forms are off by less than this part of a constraint.
+const MOST_OFF: f64 = 0.25;
 
 /// Streams of random numbers of the rivals.
 const RIVALS: [u64; 2] = [1 << 32, 1 << 33];
@@ -172,18 +173,50 @@ impl Question {
         self.runs.saturating_mul((1 + rivals) * self.genetic.generations)
     }
 
-    /// The value of a design in a search; what makes no motion is worth nothing.
-    fn worth(&self, point: &[f64], integrated: &mut usize) -> Evaluation {
-        match self.follow(point, Route::Chain, self.needs_contact()) {
-            Ok(design) => {
-                *integrated += usize::from(design.integrated);
-                self.evaluation(&design)
+    /// The value of a design in a search, in which the best one so far has this value; what makes no motion is worth nothing.
+    ///
+    /// Closed forms are too coarse to decide whether a constraint is kept: a design as near to one as they may be off, which by them would be the
+    /// best or on a front, is integrated. It keeps its value by closed forms where it keeps the constraints, so that values can be compared.
+    pub(super) fn worth(&self, point: &[f64], best: f64, integrated: &mut usize) -> Evaluation {
+        let follow = |route| match self.follow(point, route, self.needs_contact()) {
+            Ok(design) => (self.evaluation(&design), design.integrated),
+            Err(_) => {
+                let none = Evaluation {
+                    objectives: vec![f64::INFINITY; self.objectives.len()],
+                    equalities: self.density.map(|_| LARGEST_EXCESS).into_iter().collect(),
+                    inequalities: vec![LARGEST_EXCESS; self.limits.len() + usize::from(self.elastic)],
+                };
+                (none, false)
             }
-            Err(_) => Evaluation {
-                objectives: vec![f64::INFINITY; self.objectives.len()],
-                equalities: self.density.map(|_| 1.0).into_iter().collect(),
-                inequalities: vec![1.0; self.limits.len() + usize::from(self.elastic)],
-            },
+        };
+        let (evaluation, is_integrated) = follow(Route::Chain);
+        let closest = evaluation
+            .inequalities
+            .iter()
+            .copied()
+            .fold(f64::NEG_INFINITY, f64::max);
+        let tolerance = self.genetic.constraint_tolerance;
+        let counts = self.objectives.len() > 1 || evaluation.value() < best;
+        let decides = counts && closest > -MOST_OFF && !is_integrated && evaluation.is_feasible(tolerance);
+        *integrated += usize::from(is_integrated || decides);
+        if decides {
+            let judged = follow(Route::Integration).0;
+            if !judged.is_feasible(tolerance) {
+                return judged;
+            }
+        }
+        evaluation
+    }
+
+    /// The function that a search makes small; it keeps in mind the best value so far, and counts the designs that were integrated.
+    fn evaluate<'a>(&'a self, integrated: &'a mut usize) -> impl FnMut(&[f64]) -> Evaluation + 'a {
+        let mut best = f64::INFINITY;
+        move |point| {
+            let evaluation = self.worth(point, best, integrated);
+            if evaluation.is_feasible(self.genetic.constraint_tolerance) {
+                best = best.min(evaluation.value());
+            }
+            evaluation
         }
     }
 
@@ -194,7 +227,7 @@ impl Question {
             (watch.progress)(1);
             !(watch.stop)()
         };
-        let evaluate = |point: &[f64]| self.worth(point, &mut integrated);
+        let evaluate = self.evaluate(&mut integrated);
         let (front, run) = match self.objectives.len() {
             1 => {
                 let run = search(space, evaluate, &self.genetic, &mut generator, &mut go_on);
@@ -250,14 +283,17 @@ pub fn optimize(question: Question, known: Vec<SearchRun>, watch: &Watch) -> Res
     }
     let complete = runs.len() == question.runs && runs.iter().all(|run| run.stop != Stop::Interrupted);
     if runs.iter().all(|run| run.found.is_empty()) {
-        return Err(nothing(&question, &space, complete));
+        return Err(nothing(&question, &space, watch, complete));
     }
     let finalists = finalists(&question, &runs);
+    if finalists.first().is_none_or(|best| !best.feasible) {
+        return Err(nothing(&question, &space, watch, complete));
+    }
     let (mut rivals, mut decision) = (vec![], None);
     if question.objectives.len() == 1 {
         decision = finalists
             .first()
-            .map(|best| Decision::of(&question, &space, &best.design.point));
+            .map(|best| Decision::of(&question, &space, &best.design));
         if complete {
             rivals = self::rivals(&question, &space, &runs, watch);
         }
@@ -296,42 +332,88 @@ pub fn optimize_on(
     crate::parallel::on_threads(threads, || optimize(question, known, watch))
 }
 
+/// Population and generations of a search for the constraints alone, at least.
+const ENOUGH: [usize; 2] = [60, 100];
+
 /// Why nothing was found.
-fn nothing(question: &Question, space: &Space, complete: bool) -> OptimizeError {
+fn nothing(question: &Question, space: &Space, watch: &Watch, complete: bool) -> OptimizeError {
     if !complete {
         return OptimizeError::Stopped;
     }
     // Whether anything rests at all, constraints aside.
-    let mut generator = generator(question.seed, u64::MAX);
+    let mut random = generator(question.seed, u64::MAX);
     let middle = space.at(&vec![0.5; space.bounds().len()]);
     let mut reason = None;
     let rests = (0..question.genetic.population.max(100)).any(|number| {
         let point = if number == 0 {
             middle.clone()
         } else {
-            space.draw(&mut generator)
+            space.draw(&mut random)
         };
-        match question.follow(&point, Route::Chain, false) {
-            Ok(design) => {
-                reason = reason
-                    .take()
-                    .or(design.rest_time.err().map(|reason| reason.to_string()));
-                design.rest_time.is_ok()
-            }
-            Err(error) => {
-                reason = reason.take().or(Some(error));
-                false
-            }
-        }
+        let missing = match question.follow(&point, Route::Chain, question.needs_contact()) {
+            Ok(design) => question.missing_value(&design),
+            Err(error) => Some(error),
+        };
+        reason = reason.take().or(missing.clone());
+        missing.is_none()
     });
-    match (rests, reason) {
-        (false, Some(reason)) => OptimizeError::NoRest {
+    if let (false, Some(reason)) = (rests, reason) {
+        return OptimizeError::NoRest {
             duration: question.settings.duration,
             reason,
+        };
+    }
+    if question.constraints().is_empty() {
+        return OptimizeError::NoRest {
+            duration: question.settings.duration,
+            reason: "some do just before its end by closed forms, and none by integration".to_owned(),
+        };
+    }
+    // Constraints alone: how far they are broken is what is to be small.
+    let tolerance = question.genetic.constraint_tolerance;
+    let evaluate = |point: &[f64]| {
+        let evaluation = question.worth(point, f64::INFINITY, &mut 0);
+        let has_values = evaluation.objectives.iter().all(|value| value.is_finite());
+        Evaluation::of(match has_values {
+            true => evaluation.violation(tolerance),
+            false => f64::INFINITY,
+        })
+    };
+    let mut options = Options {
+        penalty: Penalty::Death,
+        ..question.genetic
+    };
+    if question.main_mass.is_none() {
+        // Closed forms cost little: enough of them to say that there is nothing.
+        options.population = options.population.max(ENOUGH[0]);
+        options.generations = options.generations.max(ENOUGH[1]);
+    }
+    let run = search(
+        space,
+        evaluate,
+        &options,
+        &mut generator(question.seed, u64::MAX - 1),
+        &mut |_| !(watch.stop)(),
+    );
+    let design = run
+        .best
+        .and_then(|best| question.follow(&best.point, Route::Integration, true).ok());
+    let broken = design.as_ref().map(|design| question.broken(design));
+    let exists = broken.as_ref().is_some_and(Vec::is_empty);
+    OptimizeError::NoFeasible {
+        constraints: question.constraints().join("; "),
+        nearest: match (design, broken) {
+            (Some(design), Some(broken)) if broken.is_empty() => {
+                let variables = question.variables.iter().zip(&design.point);
+                let values = variables
+                    .map(|(variable, value)| format!("{} = {}", variable.parameter.name(), significant(*value, 4)));
+                let values: Vec<String> = values.collect();
+                format!("there are some, such as {}", values.join(", "))
+            }
+            (Some(_), Some(broken)) => format!("the nearest that was found breaks {}", broken.join("; ")),
+            _ => "none comes near".to_owned(),
         },
-        _ => OptimizeError::NoFeasible {
-            constraints: question.constraints().join("; "),
-        },
+        exists,
     }
 }
 
@@ -349,16 +431,36 @@ fn finalists(question: &Question, runs: &[SearchRun]) -> Vec<Finalist> {
     let judge = |&(run, found): &(usize, &Found)| {
         let design = question.follow(&found.point, Route::Integration, true).ok()?;
         let evaluation = question.evaluation(&design);
+        let by_chain = match question.main_mass {
+            None => question
+                .follow(&found.point, Route::Chain, question.needs_contact())
+                .ok()?,
+            Some(_) => design.clone(),
+        };
         Some(Finalist {
             run,
-            by_chain: found.values.clone(),
-            feasible: evaluation.inequalities.iter().all(|excess| *excess <= SPARE),
+            by_chain: question.evaluation(&by_chain).objectives,
+            feasible: evaluation.is_feasible(question.genetic.constraint_tolerance),
             values: evaluation.objectives,
             design,
         })
     };
     let judged = each(&found, judge);
     let mut finalists: Vec<Finalist> = judged.into_iter().flatten().collect();
+    if question.objectives.len() > 1 {
+        // By integration a design may break a constraint, or be worse than another in everything.
+        finalists.retain(|finalist| finalist.feasible);
+        let evaluations: Vec<Evaluation> = finalists
+            .iter()
+            .map(|finalist| question.evaluation(&finalist.design))
+            .collect();
+        let front = non_dominated(
+            &evaluations.iter().collect::<Vec<_>>(),
+            question.genetic.constraint_tolerance,
+        );
+        let mut number = 0..;
+        finalists.retain(|_| number.next().is_some_and(|number| front.contains(&number)));
+    }
     // Those that keep the constraints first; of a front by the first objective.
     finalists.sort_by(|one, other| {
         let broken = one.feasible.cmp(&other.feasible).reverse();
@@ -448,14 +550,27 @@ fn rivals(question: &Question, space: &Space, runs: &[SearchRun], watch: &Watch)
         })
     };
     let budget = (evaluations, population);
-    let worth = |point: &[f64]| question.worth(point, &mut 0);
     let random = |number: usize| {
         let mut generator = generator(question.seed, RIVALS[0] + number as u64);
-        random_search(space, worth, budget, constraint_tolerance, &mut generator)
+        let mut integrated = 0;
+        random_search(
+            space,
+            question.evaluate(&mut integrated),
+            budget,
+            constraint_tolerance,
+            &mut generator,
+        )
     };
     let differential = |number: usize| {
         let seed = rand::RngExt::random(&mut generator(question.seed, RIVALS[1] + number as u64));
-        differential_evolution(space, worth, budget, constraint_tolerance, seed)
+        let mut integrated = 0;
+        differential_evolution(
+            space,
+            question.evaluate(&mut integrated),
+            budget,
+            constraint_tolerance,
+            seed,
+        )
     };
     [
         compete("random search", &random),
@@ -467,12 +582,12 @@ fn rivals(question: &Question, space: &Space, runs: &[SearchRun], watch: &Watch)
 }
 
 impl Study {
-    /// The best design that keeps the constraints, judged by integration; with several objectives the one best in the first.
+    /// The best design that keeps the constraints, judged by integration; with several objectives the one best in the first. There always is one.
     pub fn best(&self) -> Option<&Finalist> {
         self.finalists.first()
     }
 
-    /// The best values of the runs that found one, by closed forms.
+    /// The best values of the runs that found one, as the searches have them.
     pub fn values(&self) -> Vec<f64> {
         let value = |run: &SearchRun| Some(run.found.first()?.values[0]);
         self.runs.iter().filter_map(value).collect()

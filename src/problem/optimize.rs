@@ -310,7 +310,19 @@ impl Problem {
             (Some(_), false) => return Err(OptimizeFileError::MainMassAlone),
             (Some(section), true) => {
                 let main_mass = section.main_mass(false)?;
-                if main_mass.displacement == 0.0 && main_mass.speed == 0.0 {
+                if self.gives("[run] integrator_tolerance") {
+                    return Err(PrimaryFileError::Tolerance.into());
+                }
+                if self.hangs_at_rest() {
+                    question.case.start = Some(0.0);
+                    question.case.speed = 0.0;
+                }
+                let pendulum = [
+                    question.case.start.unwrap_or(question.case.amplitude),
+                    question.case.speed,
+                ];
+                let moving = [main_mass.displacement, main_mass.speed].into_iter().chain(pendulum);
+                if moving.into_iter().all(|value| value == 0.0) {
                     return Err(PrimaryFileError::AtRest.into());
                 }
                 question.main_mass = Some(main_mass);
@@ -415,9 +427,10 @@ impl Problem {
             ("feasible-first", Penalty::FeasibleFirst),
             ("augmented-lagrangian", lagrangian),
         ];
-        // No random design has just the density: death would leave nobody.
+        // No random design has just the density, and of hard limits none may be kept by chance: death would leave nobody.
         let usual = match question.density {
             Some(_) => lagrangian,
+            None if constrained => Penalty::FeasibleFirst,
             None => Penalty::Death,
         };
         question.genetic.penalty = named("penalty", section.penalty.as_ref(), usual, &penalty)?;

@@ -109,8 +109,6 @@ impl Problem {
         if self.given.iter().any(|key| key.starts_with("[excitation]")) {
             return Err(PrimaryFileError::Driven);
         }
-        // Without a word of the start it hangs at rest.
-        let starts = ["amplitude", "start", "speed"].map(|key| format!("[pendulum] {key}"));
         let hanging = Self {
             pendulum: Pendulum {
                 start: Some(0.0),
@@ -118,11 +116,7 @@ impl Problem {
             },
             ..self.clone()
         };
-        let file = if starts.iter().any(|key| self.gives(key)) {
-            self
-        } else {
-            &hanging
-        };
+        let file = if self.hangs_at_rest() { &hanging } else { self };
         let asked = Simulate::try_from(file)?;
         let (model, Start { x, velocity }) = asked.case.motion().map_err(SimulateError::from)?;
         let design = self.design().map_err(ProblemError::from).map_err(SimulateError::from)?;
@@ -152,6 +146,14 @@ impl Problem {
             },
             units,
         })
+    }
+}
+
+impl Problem {
+    /// Whether the pendulum of a main mass hangs at rest at first: the file has no word of its start.
+    pub(super) fn hangs_at_rest(&self) -> bool {
+        let starts = ["amplitude", "start", "speed"].map(|key| format!("[pendulum] {key}"));
+        !starts.iter().any(|key| self.gives(key))
     }
 }
 

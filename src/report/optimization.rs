@@ -105,18 +105,26 @@ fn asked(study: &Study) -> Vec<Block<'_>> {
     blocks.extend(equation(question, best));
     blocks.extend(held_fixed(question));
     blocks.push(Block::Note(format!(
-        "followed by closed forms until t = {}; rest: {} % of the amplitude of the first swing",
+        "followed by {} until t = {}; rest: {} % of the amplitude of the {} swing",
+        route(study),
         decimal(question.settings.duration),
-        decimal(100.0 * REST_FRACTION)
+        decimal(100.0 * REST_FRACTION),
+        if question.main_mass.is_some() {
+            "largest"
+        } else {
+            "first"
+        }
     )));
     if let Some(of) = question.main_mass {
+        let hangs = question.case.start == Some(0.0) && question.case.speed == 0.0;
         blocks.push(Block::Note(format!(
-            "main mass of {} kg on {} N/m and {} N s/m, let go from {} m at {} m/s with the pendulum hanging at rest; integrated",
+            "main mass of {} kg on {} N/m and {} N s/m, let go from {} m at {} m/s{}; contacts are counted until it rests",
             decimal(of.mass),
             decimal(of.stiffness),
             decimal(of.damping),
             decimal(of.displacement),
-            decimal(of.speed)
+            decimal(of.speed),
+            if hangs { " with the pendulum hanging at rest" } else { "" }
         )));
     }
     for constraint in question.constraints() {
@@ -124,6 +132,25 @@ fn asked(study: &Study) -> Vec<Block<'_>> {
     }
     blocks.extend(options(study).into_iter().map(Block::Sentence));
     blocks
+}
+
+/// The route by which the designs of the search were followed.
+fn route(study: &Study) -> &'static str {
+    match study.evaluations() {
+        _ if study.question.main_mass.is_some() => "integration",
+        (all, integrated) if integrated == all => "integration",
+        (_, 0) => "closed forms",
+        _ => "closed forms and integration",
+    }
+}
+
+/// The largest part by which closed forms are off for the best designs, judged again.
+fn closed_forms_off(study: &Study) -> f64 {
+    let finite = study.finalists.iter().filter(|finalist| finalist.values[0].is_finite());
+    let off = finite
+        .filter(|finalist| finalist.by_chain[0] != finalist.values[0])
+        .map(|finalist| (finalist.by_chain[0] / finalist.values[0] - 1.0).abs());
+    off.fold(0.0, f64::max)
 }
 
 /// The equation of the best design, and its numbers.
@@ -141,11 +168,18 @@ fn equation<'a>(question: &Question, best: &Finalist) -> Vec<Block<'a>> {
         Some((_, start)) => (start.x, start.velocity),
         None => (f64::NAN, f64::NAN),
     };
-    let mut blocks = vec![Block::Note(format!(
-        "x''{viscous}{dry} + sin(x) + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc) = 0, x(0) = {}, x'(0) = {}",
+    let mut blocks = vec![];
+    let mut carried = "";
+    if question.main_mass.is_some() {
+        carried = " + y''*cos(x)";
+        let main_mass = "(R + 1)*y'' + x''*cos(x) - x'^2*sin(x) + delta*y' + kappa*y = 0";
+        blocks.push(Block::Note(main_mass.to_owned()));
+    }
+    blocks.push(Block::Note(format!(
+        "x''{carried}{viscous}{dry} + sin(x) + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc) = 0, x(0) = {}, x'(0) = {}",
         decimal(x),
         decimal(velocity)
-    ))];
+    )));
     let value = |name: &str, value, source| Block::Value {
         name: name.into(),
         value,
@@ -300,8 +334,15 @@ fn options(study: &Study) -> Vec<String> {
     if let Some(budget) = budget {
         words.push(format!("no more than {budget} evaluations a run"));
     }
+    let by_integration = match question.limits.is_empty() && !question.elastic {
+        _ if question.main_mass.is_some() => "all of them integrated".to_owned(),
+        true => format!("{integrated} of them integrated for want of a closed form"),
+        false => format!(
+            "{integrated} of them integrated for want of a closed form or to see whether they keep the constraints"
+        ),
+    };
     words.push(format!(
-        "seed {}, run i with its i-th stream; {evaluations} designs followed, {integrated} of them integrated for want of a closed form",
+        "seed {}, run i with its i-th stream; {evaluations} designs followed, {by_integration}",
         question.seed
     ));
     words
@@ -329,7 +370,7 @@ fn quantities(study: &Study, design: &Design) -> Vec<(Heading, String)> {
         plain("mu/gamma", "$\\mu/\\gamma$"),
         decimal(design.model.mu / design.model.gamma),
     ));
-    let restitution = design.hardest.map(|contact| contact.restitution);
+    let restitution = design.hardest.and_then(|contact| contact.restitution);
     rows.push((plain("restitution", "restitution"), cell(restitution)));
     if let Some(limit) = study.question.yield_limit(design) {
         let pressure = Objective::PeakPressure.value(design);
@@ -392,25 +433,17 @@ fn best_design(study: &Study) -> Vec<Block<'_>> {
             rows,
         },
     ];
-    let off: Vec<f64> = study
-        .finalists
-        .iter()
-        .filter(|finalist| finalist.values[0].is_finite())
-        .map(|finalist| (finalist.by_chain[0] / finalist.values[0] - 1.0).abs())
-        .collect();
-    let worst = off.iter().copied().fold(0.0, f64::max);
-    let judged = match study.finalists.len() {
-        1 => "one design was judged again by integration; its closed form is".to_owned(),
-        count => format!(
-            "the best {count} different designs of the runs were judged again by integration; closed forms are at most"
-        ),
-    };
-    blocks.push(Block::Note(format!("{judged} {} off", percent(worst))));
-    if !best.feasible {
-        blocks.push(Block::Sentence(
-            "warning: by integration no design that was found keeps the constraints; closed forms say it does"
-                .to_owned(),
-        ));
+    if route(study) != "integration" {
+        let judged = match study.finalists.len() {
+            1 => "one design was judged again by integration; its closed form is".to_owned(),
+            count => format!(
+                "the best {count} different designs of the runs were judged again by integration; closed forms are at most"
+            ),
+        };
+        blocks.push(Block::Note(format!(
+            "{judged} {} off",
+            percent(closed_forms_off(study))
+        )));
     }
     blocks
 }
@@ -460,9 +493,10 @@ fn agreement(study: &Study) -> Vec<Block<'_>> {
     };
     vec![
         Block::Heading(format!(
-            "How far the runs agree, and what as many evaluations find otherwise: {}, {}, by closed forms",
+            "How far the runs agree, and what as many evaluations find otherwise: {}, {}, by {}",
             study.objective().meaning(),
-            study.objective().unit()
+            study.objective().unit(),
+            route(study)
         )),
         Block::Table {
             head: head(&[

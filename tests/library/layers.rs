@@ -524,3 +524,40 @@ fn an_upward_use_is_seen() {
         assert_eq!(found(module, depth, text), Vec::<String>::new(), "{text}");
     }
 }
+
+/// Every file of the repository, by its path from the root.
+fn files_below(folder: &Path, found: &mut Vec<String>) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for entry in std::fs::read_dir(root.join(folder)).expect("a folder") {
+        let entry = entry.expect("an entry");
+        let path = folder.join(entry.file_name());
+        found.push(path.to_str().expect("a path in text").to_owned());
+        if entry.file_type().expect("a type").is_dir() {
+            files_below(&path, found);
+        }
+    }
+}
+
+/// Names that Windows keeps for devices or does not allow, and names that differ by case alone, cannot be checked out everywhere.
+#[test]
+fn every_file_can_be_checked_out_on_every_system() {
+    const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "conin$", "conout$"];
+    let mut files = Vec::new();
+    for folder in ["src", "tests", "examples", "docs", "snapshots", "benches"] {
+        files_below(Path::new(folder), &mut files);
+    }
+    assert!(files.len() > 1000, "{}", files.len());
+    let mut lower = std::collections::BTreeSet::new();
+    for file in &files {
+        let name = file.rsplit(['/', '\\']).next().unwrap_or(file).to_lowercase();
+        let stem = name.split('.').next().unwrap_or(&name);
+        let is_port = |stem: &str| {
+            let number = stem.strip_prefix("com").or(stem.strip_prefix("lpt"));
+            number.is_some_and(|number| number.len() == 1 && number.chars().all(|digit| digit.is_ascii_digit()))
+        };
+        assert!(!DEVICES.contains(&stem) && !is_port(stem), "{file} is a device");
+        let is_allowed = |letter: char| (' '..='~').contains(&letter) && !r#"<>:"|?*"#.contains(letter);
+        assert!(name.chars().all(is_allowed) && !name.ends_with(['.', ' ']), "{file}");
+        assert!(lower.insert(file.to_lowercase()), "{file} differs by case alone");
+    }
+}

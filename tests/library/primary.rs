@@ -530,3 +530,62 @@ fn a_start_on_a_barrier_is_a_start_in_contact() {
         assert!(motion.impacts.iter().all(|impact| impact.speed_in >= 0.0));
     }
 }
+
+/// On a pivot that is hardly moved the pendulum rests when it does on a fixed one.
+#[test]
+fn the_pendulum_of_a_heavy_main_mass_rests_as_on_a_fixed_pivot() {
+    let primary = Primary {
+        mass: 1e9,
+        stiffness: 1e9,
+        damping: 0.0,
+        force: 0.0,
+        frequency: 0.0,
+    };
+    for (left, right, x) in [
+        (None, Some(0.323), -1.5),
+        (Some(-0.4), None, 0.9),
+        (Some(-0.5), Some(0.3), -0.45),
+        (None, None, 1.2),
+    ] {
+        let model = Model {
+            gamma: 1e4,
+            mu: 500.0,
+            zeta: 0.02,
+            left,
+            right,
+            ..Model::default()
+        };
+        let start = Start { x, velocity: 0.0 };
+        let alone = simulate(
+            &model,
+            start,
+            Integrator::RungeKutta,
+            &Settings {
+                duration: 200.0,
+                ..Settings::default()
+            },
+        );
+        let alone = alone.expect("a motion");
+        let motion = follow(
+            PrimaryCase {
+                primary,
+                model,
+                start: [x, 0.0, 0.0, 0.0],
+            },
+            200.0,
+        );
+        let (found, truth) = (
+            motion.pendulum_rest_time().expect("it rests"),
+            alone.rest().time.expect("it rests"),
+        );
+        assert!(
+            (found / truth - 1.0).abs() < 1e-6,
+            "{left:?} {right:?}: {found} {truth}"
+        );
+        // The force of the first impact is that on the fixed pivot.
+        if let (Some(impact), Some(contact)) = (motion.impacts.first(), alone.impacts.first()) {
+            let (found, truth) = (motion.peak_force(impact), alone.peak_force(contact).expect("a force"));
+            assert!((found / truth - 1.0).abs() < 1e-6, "{found} {truth}");
+        }
+    }
+}

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 /// Far more than any refusal takes; without it a hang would be a hang of the test.
-const TIMEOUT: &str = "60";
+const TIMEOUT: &str = "3600";
 
 fn run(arguments: &[&str], input: &[u8]) -> Output {
     let mut child = Command::new(env!("CARGO_BIN_EXE_lindstedt"))

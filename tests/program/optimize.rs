@@ -1,12 +1,13 @@
 //! Searches for the best damper: what they find against other ways to the same numbers, and that threads, records and interrupts change nothing.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::Duration;
 
 use lindstedt::export::{decimal, significant};
 use lindstedt::genetic::Options;
-use lindstedt::impact::{Integrator, Parameter, Settings, simulate};
+use lindstedt::impact::primary::simulate_primary;
+use lindstedt::impact::{Integrator, Parameter, Settings, Simulation, simulate};
 use lindstedt::optimize::{Objective, Question, Role, Route, Study, Watch, optimize};
 use lindstedt::problem::Problem;
 
@@ -119,10 +120,235 @@ fn the_best_design_rests_when_runge_kutta_says() {
     let greatest = force.fold(0.0, f64::max) * best.design.units.force();
     let hardest = best.design.hardest.expect("a contact");
     assert!(
-        (hardest.force / greatest - 1.0).abs() < 2e-3,
+        (hardest.force / greatest - 1.0).abs() < 1e-4,
         "{} {greatest}",
         hardest.force
     );
+}
+
+/// The motion of a design by Runge-Kutta, as far as it is followed in a search.
+fn judged(question: &Question, point: &[f64]) -> Simulation {
+    let (model, start) = question.motion_of(point).expect("a motion");
+    let settings = Settings {
+        duration: question.settings.duration,
+        ..Settings::default()
+    };
+    simulate(&model, start, Integrator::RungeKutta, &settings).expect("a motion")
+}
+
+/// The greatest force in units of m g, its restitution, and the number of contacts until rest, read off a motion.
+fn hardest_of(motion: &Simulation) -> (f64, f64, usize) {
+    let rest = motion.rest().time.expect("it rests");
+    let impacts = motion.impacts.iter().filter(|impact| impact.entry_time < rest);
+    let hardest = impacts.clone().map(|impact| {
+        let (entry, exit) = (impact.entry_time, impact.exit_time.expect("an end"));
+        let barrier = motion.model.barrier(impact.side).expect("a barrier");
+        let force = (0..=4000).map(|step| {
+            let t = entry + (exit - entry) * f64::from(step) / 4000.0;
+            let (x, velocity) = motion.path.at(t).expect("a state");
+            motion
+                .model
+                .contact(impact.side.sign() * (x - barrier), impact.side.sign() * velocity)
+        });
+        (force.fold(0.0, f64::max), impact.restitution.expect("a restitution"))
+    });
+    let (force, restitution) = hardest.fold((0.0, 0.0), |one, other| if other.0 > one.0 { other } else { one });
+    (force, restitution, impacts.count())
+}
+
+/// Gravity presses the bob into a soft barrier: in closed form the contact is another one.
+#[test]
+fn force_and_restitution_of_an_integrated_design_are_those_of_its_motion() {
+    for (contact, point) in [
+        ("mu = 2000", [0.05, 0.001, 0.03, 1e6]),
+        ("mu = 2000", [0.2, 0.002, 0.05, 1e6]),
+        ("mu = 300", [0.1, 0.001, 0.05, 3e5]),
+        ("lambda = 0.5", [0.1, 0.002, 0.2, 1e5]),
+    ] {
+        let text = format!(
+            "[limits]\nmass = [0.05, 0.2]\nradius = [0.001, 0.002]\nlength = [0.03, 0.2]\nmodulus = [1e5, 1e7]\n[contact]\n{contact}\n"
+        );
+        let question = asked(&text);
+        let design = question.follow(&point, Route::Integration, true).expect("a design");
+        let (force, restitution, impacts) = hardest_of(&judged(&question, &point));
+        let hardest = design.hardest.expect("a contact");
+        let found = hardest.force / design.units.force();
+        assert!(
+            (found / force - 1.0).abs() < 1e-5,
+            "{contact} {point:?}: {found} {force}"
+        );
+        let found = hardest.restitution.expect("a restitution");
+        assert!((found / restitution - 1.0).abs() < 1e-5, "{found} {restitution}");
+        assert_eq!(design.impacts, impacts);
+    }
+}
+
+/// The numbers of a pendulum on a main mass are those of that motion, as `simulate` follows it from the same file.
+#[test]
+fn a_main_mass_and_its_pendulum_have_the_numbers_of_their_own_motion() {
+    const FILE: &str = "[primary]\nmass = 0.56\nstiffness = 200\ndamping = 0.4\ndisplacement = 0.03\n[design]\nradius = 0.0096\n\
+                        modulus = 1.439e9\n[contact]\nmu_over_gamma = 0.5\n[damping]\nzeta = 0.02\n";
+    for (start, point) in [
+        ("barrier = [-0.3, 0.3]", [0.0279, 0.15]),
+        ("barrier = [-0.3, 0.3]\nstart = -0.29", [0.0279, 0.15]),
+        ("barrier = [-0.3, 0.3]\nstart = 0.1\nspeed = -0.5", [0.04, 0.1]),
+        ("barrier = 0.2", [0.01, 0.08]),
+    ] {
+        let searched = format!(
+            "{FILE}[pendulum]\n{start}\n[limits]\nmass = [0.005, 0.05]\nlength = [0.03, 0.15]\n[genetic]\nobjective = \"primary_rest_time\"\n"
+        );
+        let question = asked(&searched);
+        let design = question.follow(&point, Route::Integration, true).expect("a design");
+        let fixed = FILE.replace(
+            "[design]\n",
+            &format!("[design]\nmass = {}\nlength = {}\n", point[0], point[1]),
+        );
+        let simulated = format!("{fixed}[pendulum]\n{start}\n[run]\nduration = 500\n");
+        let file: Problem = simulated.parse().expect("a file");
+        let primary = file.primary_case(false).expect("a main mass");
+        let motion = simulate_primary(primary.case, &primary.settings).expect("a motion");
+        let rest = motion.rest_time().expect("it rests");
+        let seconds = Objective::PrimaryRestTime.value(&design).expect("it rests");
+        assert!(
+            (seconds / (rest * primary.units.time()) - 1.0).abs() < 1e-9,
+            "{start}: {seconds}"
+        );
+        let impacts: Vec<_> = motion.impacts.iter().filter(|impact| impact.entry < rest).collect();
+        assert!(design.impacts == impacts.len() && !impacts.is_empty(), "{start}");
+        // The force by looking at the states.
+        let force = impacts.iter().flat_map(|impact| {
+            let exit = impact.exit.expect("an end");
+            let (motion, model, sign) = (&motion, primary.case.model, impact.side.sign());
+            let barrier = model.barrier(impact.side).expect("a barrier");
+            (0..=400).map(move |step| {
+                let t = impact.entry + (exit - impact.entry) * f64::from(step) / 400.0;
+                let state = motion.at(t).expect("a state");
+                model.contact(sign * (state.x - barrier), sign * state.velocity)
+            })
+        });
+        let greatest = force.fold(0.0, f64::max) * design.units.force();
+        let hardest = design.hardest.expect("a contact");
+        assert!(
+            (hardest.force / greatest - 1.0).abs() < 1e-3,
+            "{start}: {} {greatest}",
+            hardest.force
+        );
+        let deepest = impacts.iter().map(|impact| impact.penetration).fold(0.0, f64::max);
+        // Hertz: p = 3 F/(2 pi R d).
+        let elastic = design.units.force() * design.model.gamma * deepest.powf(1.5);
+        let pressure = 1.5 * elastic / (std::f64::consts::PI * 0.0096 * point[1] * deepest);
+        assert!((hardest.pressure / pressure - 1.0).abs() < 1e-9);
+        let restitutions = impacts
+            .iter()
+            .map(|impact| impact.speed_out.expect("a speed") / impact.speed_in);
+        let own = hardest.restitution.expect("a restitution");
+        assert!(restitutions.into_iter().any(|other| (other - own).abs() < 1e-12));
+    }
+}
+
+/// Limits beside a main mass hold for its own motion.
+#[test]
+fn limits_beside_a_main_mass_are_those_of_its_motion() {
+    let text = std::fs::read_to_string(example("main-mass")).expect("an example");
+    let force = |question: &Question, point: &[f64]| {
+        let design = question.follow(point, Route::Integration, true).expect("a design");
+        Objective::PeakForce.value(&design).expect("a force")
+    };
+    let limit = force(&asked(&text), &[0.02, 0.1]);
+    let limited = text.replace("[limits]\n", &format!("[limits]\nmax_peak_force = {limit}\n"));
+    let mut question = asked(&limited);
+    (question.runs, question.genetic.population, question.genetic.generations) = (1, 6, 2);
+    let found = study(question);
+    let own = force(&found.question, &found.best().expect("a design").design.point);
+    assert!((1e-3..=limit).contains(&own), "{own} {limit}");
+    let document = lindstedt::export::text::document(&lindstedt::report::optimization(&found), 120);
+    for words in ["by closed forms", "closed form is", "want of a closed form"] {
+        assert!(!document.contains(words), "{document}");
+    }
+}
+
+/// Hard limits are kept by the default way, as the judge sees it.
+#[test]
+fn designs_that_keep_hard_limits_are_found() {
+    for limit in ["max_peak_force = 30", "max_impacts = 9", "max_peak_pressure = 5e7"] {
+        let text = format!("[limits]\n{limit}\n[genetic]\nruns = 1\npopulation = 30\ngenerations = 40\n");
+        let found = study(asked(&text));
+        let best = found.best().expect("a design");
+        let motion = judged(&found.question, &best.design.point);
+        let (force, _, impacts) = hardest_of(&motion);
+        let force = force * best.design.units.force();
+        assert!(best.feasible);
+        match limit {
+            "max_peak_force = 30" => assert!(force <= 30.0 * (1.0 + 1e-4) && force > 20.0, "{force}"),
+            "max_impacts = 9" => assert!(impacts <= 9 && impacts > 5, "{impacts}"),
+            _ => assert!(
+                Objective::PeakPressure
+                    .value(&best.design)
+                    .is_some_and(|pressure| pressure <= 5e7)
+            ),
+        }
+        let said = lindstedt::report::optimization_sentences(&found).join("\n");
+        if limit == "max_impacts = 9" {
+            assert!(said.contains("It breaks max_impacts = 9 (11)"), "{said}");
+        }
+        assert!(!said.contains("as good as the best"), "{said}");
+    }
+    let missed = run(&["optimize", "tests/errors/optimize-death-finds-none.toml"]);
+    let message = String::from_utf8_lossy(&missed.stderr).into_owned();
+    assert!(missed.status.code() == Some(1) && missed.stdout.is_empty());
+    assert!(
+        message.contains("there are some") && message.contains("feasible-first"),
+        "{message}"
+    );
+}
+
+/// Sentences follow from numbers that were computed.
+#[test]
+fn no_sentence_says_more_than_the_numbers() {
+    let said = |text: &str| {
+        let found = study(asked(text));
+        let sentences = lindstedt::report::optimization_sentences(&found).join("\n");
+        (found, sentences)
+    };
+    const SHORT: &str = "[genetic]\nruns = 2\npopulation = 30\ngenerations = 20\n";
+    // The length that is best in seconds lies between the limits.
+    let (found, sentences) = said(&format!("[damping]\nviscous = 0.003\n{SHORT}"));
+    let ends = found
+        .decision
+        .as_ref()
+        .and_then(|decision| decision.ends)
+        .expect("both ends");
+    let inside = ends.best.iter().any(|length| !ends.lengths.contains(length));
+    assert!(
+        inside && !sentences.contains("from one end to the other"),
+        "{sentences}"
+    );
+    // No run stood still.
+    assert!(
+        sentences.contains("no run ended because") && !sentences.contains("either"),
+        "{sentences}"
+    );
+    let (_, sentences) = said("[genetic]\nruns = 2\npopulation = 30\n");
+    assert!(sentences.contains("from one end to the other"), "{sentences}");
+    // What random search finds is better: nothing found is an optimum.
+    for text in [
+        "[genetic]\nruns = 3\npopulation = 4\ngenerations = 2\n",
+        "[damping]\nviscous = 0.5\n[genetic]\nruns = 2\npopulation = 4\ngenerations = 2\n",
+    ] {
+        let (found, sentences) = said(text);
+        let own = found.decision.as_ref().expect("a decision").value;
+        let better = found.rivals.iter().filter_map(|rival| rival.spread());
+        let better = better.fold(f64::INFINITY, |best, spread| best.min(spread.best));
+        let is_better = better < own * (1.0 - 1e-3);
+        assert_eq!(
+            sentences.contains("is no optimum"),
+            is_better || sentences.contains("a look around it"),
+            "{sentences}"
+        );
+        if is_better {
+            assert!(!sentences.contains("The optimum is a corner"), "{sentences}");
+        }
+    }
 }
 
 #[test]
@@ -159,7 +385,7 @@ fn constraints_are_kept_by_integration_too() {
     let design = &best.design;
     let volume = 4.0 / 3.0 * std::f64::consts::PI * design.case.design.radius.powi(3);
     assert!((design.case.design.mass / (7850.0 * volume) - 1.0).abs() < 1.1e-3);
-    assert!(design.hardest.expect("a contact").force < 101.0);
+    assert!(design.hardest.expect("a contact").force <= 100.0);
     assert!(!found.decision.as_ref().expect("a decision").active.is_empty());
 }
 
@@ -221,6 +447,14 @@ fn lines(path: &Path) -> usize {
     std::fs::read_to_string(path).map_or(0, |text| text.matches('\n').count())
 }
 
+/// Waits until a search has written so many lines of its record; one of more runs than anybody has time for does.
+fn wait_for_lines(child: &mut Child, record: &Path, count: usize) {
+    while lines(record) < count {
+        assert!(child.try_wait().expect("a state").is_none(), "the search has ended");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
 /// A process that is killed in the middle leaves a record that reads, and taken up again the result is that of one go.
 #[test]
 fn a_killed_search_is_taken_up_again() {
@@ -228,24 +462,23 @@ fn a_killed_search_is_taken_up_again() {
     let record: PathBuf = folder.path().join("runs.jsonl");
     let path = record.to_str().expect("text");
     let whole = ["optimize", "--runs", "12", "--seed", "5", "--format", "json"];
+    // The number of runs is all that may differ.
     let mut child = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
-        .args([&whole[..], &["--record", path, "--jobs", "1"]].concat())
+        .args([
+            "optimize", "--runs", "100000", "--seed", "5", "--record", path, "--jobs", "1",
+        ])
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
         .expect("the program starts");
-    let started = Instant::now();
-    while lines(&record) < 3 && started.elapsed() < Duration::from_secs(120) {
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait_for_lines(&mut child, &record, 4);
     child.kill().expect("it ends");
     child.wait().expect("it ended");
-    let done = lines(&record) - 1;
-    assert!((2..12).contains(&done), "{done} runs");
-    // As if it had been killed while it wrote.
-    let mut text = std::fs::read_to_string(&record).expect("a record");
-    text.truncate(text.len() - 40);
-    std::fs::write(&record, &text).expect("a file");
+    // As if it had been killed while it wrote the third run.
+    let text = std::fs::read_to_string(&record).expect("a record");
+    let first: Vec<&str> = text.split_inclusive('\n').take(4).collect();
+    let first = first.concat();
+    std::fs::write(&record, &first[..first.len() - 40]).expect("a file");
     let resumed = printed(&[&whole[..], &["--resume", path]].concat());
     assert_eq!(resumed, printed(&whole));
     assert_eq!(lines(&record), 13);
@@ -274,16 +507,13 @@ fn an_interrupt_keeps_what_was_done() {
     let folder = tempfile::tempdir().expect("a folder");
     let record: PathBuf = folder.path().join("runs.jsonl");
     let path = record.to_str().expect("text");
-    let child = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
-        .args(["optimize", "--runs", "400", "--record", path])
+    let mut child = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+        .args(["optimize", "--runs", "100000", "--record", path])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .expect("the program starts");
-    let started = Instant::now();
-    while lines(&record) < 3 && started.elapsed() < Duration::from_secs(120) {
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait_for_lines(&mut child, &record, 3);
     let asked = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     assert!(asked.expect("kill").success());
     let output = child.wait_with_output().expect("it ended");
@@ -301,7 +531,7 @@ fn an_interrupt_keeps_what_was_done() {
 
 #[test]
 fn a_budget_of_time_hands_back_what_is_done() {
-    let output = run(&["optimize", "--runs", "1000", "--budget", "0.5s"]);
+    let output = run(&["optimize", "--runs", "100000", "--budget", "0.5s"]);
     assert_eq!(output.status.code(), Some(4));
     assert!(String::from_utf8_lossy(&output.stdout).contains("Stopped before the end"));
     let output = run(&["optimize", "--budget", "500"]);

@@ -156,7 +156,7 @@ fn a_hyphen_is_standard_input() {
 
 /// A limit of the algebra is met once, at the beginning, and not by every method in turn.
 #[test]
-fn what_is_too_long_is_refused_soon() {
+fn what_is_too_long_is_refused_once() {
     let wide = "x'' + (x + y + z + 1)^60 - (y + z + 1)^60 + x = 0";
     for (arguments, message) in [
         (
@@ -168,29 +168,31 @@ fn what_is_too_long_is_refused_soon() {
             "the power 101 in the equation gives 201 harmonics",
         ),
     ] {
-        let start = std::time::Instant::now();
         let output = run(&arguments);
         let error = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(error.contains(message), "{error}");
-        assert!(
-            start.elapsed().as_secs_f64() < 20.0,
-            "{arguments:?}: {:?}",
-            start.elapsed()
-        );
+        assert_eq!(error.matches(message).count(), 1, "{error}");
+        assert!(output.status.code() == Some(1) && output.stdout.is_empty(), "{error}");
     }
 }
 
 #[test]
 fn a_time_limit_ends_what_takes_longer() {
-    let long = ["derive", "pendulum", "--method", "homotopy-analysis", "--order", "20"];
-    let start = std::time::Instant::now();
-    let output = run(&[&long[..], &["--timeout", "0.05"]].concat());
+    // It waits for an equation that never comes: that the test ends at all is the limit's doing.
+    let mut child = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+        .args(["derive", "-", "--timeout", "0.05"])
+        .stdin(std::process::Stdio::piped())
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let open = child.stdin.take();
+    let output = child.wait_with_output().expect("the program ends");
+    drop(open);
     assert_eq!(output.status.code(), Some(1));
     assert!(output.stdout.is_empty());
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(message.contains("stopped after 0.05 s without a result"), "{message}");
-    assert!(start.elapsed().as_secs_f64() < 20.0);
-    assert!(run(&["derive", "duffing", "--timeout", "60"]).status.success());
+    assert!(run(&["derive", "duffing", "--timeout", "3600"]).status.success());
 }
 
 #[test]
@@ -434,13 +436,23 @@ fn the_frequency_is_the_same_with_and_without_the_motion() {
     }
 }
 
-/// What a command prints whose time is up after a second: the warning says of how much it is a part.
-fn stopped_early(arguments: &[&str], of: &str) -> Value {
-    let output = run(&[arguments, &["--timeout", "1"]].concat());
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(4), "{message}");
-    assert!(message.contains("stopped early") && message.contains(of), "{message}");
-    serde_json::from_slice(&output.stdout).expect("a document")
+/// What a command prints whose time is up before its end: the warning says of how much it is a part. A busy machine is given more time,
+/// until there is enough.
+fn stopped_early(arguments: &[&str], of: &str, is_enough: fn(&Value) -> bool) -> Value {
+    for doublings in 0..12 {
+        let output = run(&[arguments, &["--timeout", &(1 << doublings).to_string()]].concat());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        if output.status.code() == Some(1) && message.contains("without a result") {
+            continue;
+        }
+        assert_eq!(output.status.code(), Some(4), "{message}");
+        assert!(message.contains("stopped early") && message.contains(of), "{message}");
+        let document = serde_json::from_slice(&output.stdout).expect("a document");
+        if is_enough(&document) {
+            return document;
+        }
+    }
+    panic!("{arguments:?} has no part of its result")
 }
 
 /// What is there when the time is up is printed: an expansion to the order that its primes were enough for.
@@ -455,9 +467,11 @@ fn an_expansion_that_is_stopped_keeps_its_orders() {
         "--format",
         "json",
     ];
-    let document = stopped_early(&long, "of 600");
+    let document = stopped_early(&long, "of 600", |document| {
+        document["order"].as_u64().is_some_and(|order| order >= 32)
+    });
     let order = document["order"].as_u64().expect("an order");
-    assert!((32..600).contains(&order), "{order}");
+    assert!(order < 600, "{order}");
     let text = document["validity"].to_string();
     assert!(text.contains("stopped before order 600"), "{text}");
     // They are the orders of a shorter expansion.
@@ -483,9 +497,12 @@ fn a_sweep_that_is_stopped_keeps_its_motions() {
         "--format",
         "json",
     ];
-    let document = stopped_early(&sweep, "of 20001 motions");
+    let document = stopped_early(&sweep, "of 20001 motions", |document| {
+        // The first one to the end.
+        document["motions"][0]["final_state"]["t"] == 400.0
+    });
     let motions = document["motions"].as_array().expect("motions");
-    assert!((1..20001).contains(&motions.len()), "{}", motions.len());
+    assert!(motions.len() < 20001, "{}", motions.len());
     // They are those that are followed alone.
     let force = motions[0]["values"]["F"].to_string();
     assert_eq!(force, "0.2");
@@ -569,23 +586,12 @@ fn a_motion_that_leaves_the_range_of_numbers_ends_there() {
 #[test]
 fn an_expansion_with_letters_that_is_stopped_keeps_its_orders() {
     const LETTERS: &str = "x'' + x + eps*(a2*x^2 + a3*x^3 + a5*x^5) = 0";
-    let output = run(&[
-        "derive",
-        LETTERS,
-        "--order",
-        "70",
-        "--omega-only",
-        "--format",
-        "json",
-        "--timeout",
-        "2",
-    ]);
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(4), "{message}");
-    assert!(message.contains("of 70"), "{message}");
-    let document: Value = serde_json::from_slice(&output.stdout).expect("a document");
+    let long = ["derive", LETTERS, "--order", "70", "--omega-only", "--format", "json"];
+    let document = stopped_early(&long, "of 70", |document| {
+        document["order"].as_u64().is_some_and(|order| order >= 2)
+    });
     let order = document["order"].as_u64().expect("an order");
-    assert!((1..70).contains(&order), "{order}");
+    assert!(order < 70, "{order}");
     let shorter = json(&["derive", LETTERS, "--order", &order.to_string(), "--omega-only"]);
     assert_eq!(shorter["frequency"], document["frequency"]);
 }

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/simulate");
 
 fn run(arguments: &[&str]) -> Output {
-    run_for("60", arguments)
+    run_for("3600", arguments)
 }
 
 /// With this time limit, in seconds.
@@ -329,15 +329,16 @@ fn steps_and_seconds_are_limits_that_are_said() {
     assert!(note.contains("warning: 3 of 3 motions stopped early"), "{note}");
 
     std::fs::write(&path, "[run]\nduration = 1e9\nstep_limit = 10000000\n").expect("a file");
-    let output = run_for("0.2", &[file, "--format", "json"]);
-    assert_eq!(output.status.code(), Some(4));
-    let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    // A busy machine is given more time, until the barrier has been touched.
+    let touched = ["0.2", "2", "20", "200", "2000"].into_iter().find_map(|seconds| {
+        let output = run_for(seconds, &[file, "--format", "json"]);
+        assert_eq!(output.status.code(), Some(4));
+        let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let impacts = document["impacts"].as_array().map_or(0, Vec::len);
+        (impacts > 0).then_some(document)
+    });
+    let document = touched.expect("an impact");
     assert_eq!(document["complete"], false);
-    assert!(
-        document["impacts"]
-            .as_array()
-            .is_some_and(|impacts| !impacts.is_empty())
-    );
     let stopped = document["stopped"].as_str().expect("a reason");
     assert!(stopped.contains("stopped from outside"), "{stopped}");
     std::fs::remove_file(path).expect("the file goes");

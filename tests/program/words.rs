@@ -4,7 +4,10 @@ use std::process::{Command, Output};
 
 fn run(arguments: &[&str], columns: Option<usize>) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lindstedt"));
-    command.args(arguments).args(["--timeout", "60"]).env_remove("COLUMNS");
+    command
+        .args(arguments)
+        .args(["--timeout", "3600"])
+        .env_remove("COLUMNS");
     if let Some(columns) = columns {
         command.env("COLUMNS", columns.to_string());
     }

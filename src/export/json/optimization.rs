@@ -29,7 +29,7 @@ pub struct OptimizationDocument {
     pub complete: bool,
     /// The runs, by their numbers.
     pub runs: Vec<Run>,
-    /// The best values of the runs, by closed forms, and of other searches with as many evaluations; empty with several objectives.
+    /// The best values of the runs as the searches have them, and of other searches with as many evaluations; empty with several objectives.
     pub searches: Vec<Search>,
     /// The median over the runs of the best value after the random population and after every generation; null while half of them have none.
     pub median_curve: Vec<Option<f64>>,
@@ -239,14 +239,14 @@ pub struct Run {
     pub generations: usize,
     /// Designs that were followed.
     pub evaluations: usize,
-    /// Those that have no closed form and were integrated.
+    /// Those that were integrated: they have no closed form, or would be the best if they keep the constraints.
     pub integrated: usize,
     /// Why it ended.
     #[schemars(extend("enum" = Stop::ALL.map(Stop::name)))]
     pub stop: String,
 }
 
-/// A design that a run found, by closed forms.
+/// A design that a run found, as the search has it: by closed forms, by integration where there are none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(deny_unknown_fields)]
@@ -285,11 +285,11 @@ pub struct Search {
 pub struct Finalist {
     /// The number of the run that found it.
     pub run: usize,
-    /// Its objectives by closed forms.
+    /// Its objectives by closed forms, where it has them; else by integration.
     pub by_closed_forms: Vec<f64>,
     /// The same by integration; null where it does not rest.
     pub values: Vec<Option<f64>>,
-    /// Whether by integration it keeps the constraints, with 1 % to spare.
+    /// Whether by integration it rests and keeps the constraints.
     pub feasible: bool,
     /// The design by integration.
     pub design: Design,
@@ -315,7 +315,7 @@ pub struct Design {
     pub peak_force: Option<f64>,
     /// The greatest pressure of Hertz, in Pa; null where there is none.
     pub peak_pressure: Option<f64>,
-    /// The coefficient of restitution of the fastest contact, dimensionless; null where there is none.
+    /// The coefficient of restitution of the contact with the greatest force, dimensionless; null where there is none.
     pub restitution: Option<f64>,
     /// The rest time of the main mass, in seconds; null where it never rests, or none counts.
     pub primary_rest_time: Option<f64>,
@@ -325,7 +325,7 @@ pub struct Design {
     pub mu_over_gamma: f64,
 }
 
-/// A main mass on spring and dashpot, let go with the pendulum hanging at rest.
+/// A main mass on spring and dashpot that carries the pendulum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields, rename = "MainMass")]
 pub struct MainMassDocument {
@@ -390,6 +390,9 @@ pub struct Unit {
     pub seconds: [f64; 2],
     /// The same in units of time of each length.
     pub dimensionless: [f64; 2],
+    /// The best lengths of those that were tried between the limits, the rest as it is best, in m: by the rest time in seconds, and by that in units
+    /// of time.
+    pub best_lengths: [f64; 2],
 }
 
 /// The document of kind `optimization`.
@@ -472,8 +475,8 @@ fn design(study: &Study, design: &optimize::Design) -> Design {
         impacts: design.impacts,
         peak_force: design.hardest.map(|contact| contact.force),
         peak_pressure: design.hardest.map(|contact| contact.pressure),
-        restitution: design.hardest.map(|contact| contact.restitution),
-        primary_rest_time: design.primary_rest_time,
+        restitution: design.hardest.and_then(|contact| contact.restitution),
+        primary_rest_time: Objective::PrimaryRestTime.value(design),
         gamma: design.model.gamma,
         mu_over_gamma: design.model.mu / design.model.gamma,
     }
@@ -501,6 +504,7 @@ fn decision(decision: &optimize::Decision) -> Decision {
             lengths: ends.lengths,
             seconds: ends.seconds,
             dimensionless: ends.dimensionless,
+            best_lengths: ends.best,
         }),
         materials: decision.materials.clone(),
     }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::optimize::{Finalist, Objective, Question, SearchRun, Study};
 
-/// The table: for one objective the best design of every run by closed forms, for several the front by integration. A first line of comment
+/// The table: for one objective the best design of every run as it has it, for several the front by integration. A first line of comment
 /// has the units; what has no value is empty.
 ///
 /// ```

@@ -100,6 +100,7 @@ struct Run<'a> {
     /// What the contacts had taken when the open impact began.
     taken: f64,
     turns: Vec<(f64, f64)>,
+    swings: Vec<(f64, f64)>,
     start_energy: f64,
     largest: f64,
     astray: f64,
@@ -135,6 +136,7 @@ impl<'a> Run<'a> {
             impacts: Vec::new(),
             taken: 0.0,
             turns: Vec::new(),
+            swings: Vec::new(),
             start_energy: energy,
             largest: energy.abs(),
             astray: 0.0,
@@ -216,10 +218,11 @@ impl<'a> Run<'a> {
                 events.push(Event::stop(offset("x", place)));
             }
         }
-        if self.case.sticks() {
-            events.push(Event::stop(own("x'")));
-        }
-        let reason = self.glide(direction, &events)?;
+        events.push(match self.case.sticks() {
+            true => Event::stop(own("x'")),
+            false => Event::record(own("x'")),
+        });
+        let reason = self.glide(direction, &events, Some(events.len() - 1))?;
         if let End::Event(event) = reason {
             match sides.get(event.wrapping_sub(1)) {
                 Some(side) => self.enter(*side, direction),
@@ -229,8 +232,9 @@ impl<'a> Run<'a> {
         Ok(reason)
     }
 
-    /// Away from every force of a barrier until one of these events; the first of them are the turning points of the main mass.
-    fn glide(&mut self, direction: f64, events: &[Event]) -> Result<End, PrimaryError> {
+    /// Away from every force of a barrier until one of these events; the first of them are the turning points of the main mass, those of
+    /// the pendulum have this number where they are looked for.
+    fn glide(&mut self, direction: f64, events: &[Event], swings: Option<usize>) -> Result<End, PrimaryError> {
         let followed = self.equations.flight(direction)?;
         let PrimaryState { x, velocity, y, speed } = self.state;
         let start = self.with_accounts(&[x, velocity, y, speed], &followed);
@@ -238,6 +242,9 @@ impl<'a> Run<'a> {
             .system
             .solve(self.t, &start, self.settings.duration, events, &self.options())?;
         self.turns_of(&path, |state| state[2], |time| time);
+        for met in path.occurrences().iter().filter(|met| Some(met.event) == swings) {
+            self.swings.extend(path.at(met.time).map(|state| (met.time, state[0])));
+        }
         let (reason, end) = (path.reason(), path.end());
         let last = path.at(end).unwrap_or(start);
         self.state = PrimaryState {
@@ -316,11 +323,11 @@ impl<'a> Run<'a> {
             .system
             .solve(0.0, &start, LONGEST_CONTACT, &events, &self.options())?;
         self.turns_of(&path, |state| state[2], |_| f64::NAN);
-        let deepest = path.occurrences().iter().filter(|met| met.event == 3);
-        let deepest = deepest
-            .filter_map(|met| path.at(met.time))
-            .map(|state| state[0] * state[0])
-            .fold(depth, f64::max);
+        let turns = path.occurrences().iter().filter(|met| met.event == 3);
+        let turns: Vec<Vec<f64>> = turns.filter_map(|met| path.at(met.time)).collect();
+        let deepest = turns.iter().map(|state| state[0] * state[0]).fold(depth, f64::max);
+        let swing = |state: &Vec<f64>| (state[4], place + side.sign() * state[0] * state[0]);
+        self.swings.extend(turns.iter().map(swing));
         let reason = path.reason();
         let last = path.at(path.end()).unwrap_or(start);
         let w = last[0].max(0.0);
@@ -364,7 +371,7 @@ impl<'a> Run<'a> {
             Event::stop(own("gamma") + sign * own("mu*x'")),
         ];
         let before = self.state.x;
-        let reason = self.glide(direction, &events)?;
+        let reason = self.glide(direction, &events, None)?;
         // What the barrier stores on this way it does not give back.
         let stored = |x: f64| {
             let depth = (side.sign() * (x - place)).max(0.0);
@@ -462,6 +469,7 @@ impl<'a> Run<'a> {
             stop,
             impacts: self.impacts,
             turns: self.turns,
+            swings: self.swings,
             energy: PrimaryEnergy {
                 start: self.start_energy,
                 end: self.case.energy(self.state),

@@ -122,6 +122,14 @@ impl PrimaryMotion {
                 envelope.push(larger);
             }
         }
+        self.falls_to(level, &envelope)
+    }
+
+    /// The last time at which this envelope, straight lines of log h through (t, h), falls through a level.
+    ///
+    /// # Errors
+    /// Why it does not.
+    pub(super) fn falls_to(&self, level: f64, envelope: &[(f64, f64)]) -> Result<f64, NoRest> {
         let Some(index) = envelope.iter().rposition(|(_, height)| *height > level) else {
             return Err(NoRest::StaysAbove);
         };

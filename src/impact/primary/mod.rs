@@ -21,6 +21,7 @@ mod equations;
 mod follow;
 mod linear;
 mod path;
+mod pendulum;
 mod si;
 mod sweep;
 
@@ -167,6 +168,8 @@ pub struct PrimaryMotion {
     pub impacts: Vec<PrimaryImpact>,
     /// Turning points of the main mass: time and displacement.
     pub turns: Vec<(f64, f64)>,
+    /// Turning points of the pendulum: time and angle.
+    pub swings: Vec<(f64, f64)>,
     /// What became of the energy.
     pub energy: PrimaryEnergy,
     path: PrimaryPath,

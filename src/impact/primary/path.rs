@@ -105,6 +105,18 @@ impl PrimaryPath {
         self.pieces.get(after.checked_sub(1)?)?.1.at(time)
     }
 
+    /// The contacts that begin in this interval of time: their paths in s, and the sides of their barriers.
+    pub(super) fn contacts(&self, [from, until]: [f64; 2]) -> impl Iterator<Item = (&Path, Side)> {
+        let within = self
+            .pieces
+            .iter()
+            .filter(move |(start, _)| (from..=until).contains(start));
+        within.filter_map(|(_, piece)| match piece {
+            Piece::Contact { path, side, .. } => Some((path, *side)),
+            Piece::Flight(_) | Piece::Held { .. } => None,
+        })
+    }
+
     pub(super) fn starts(&self) -> impl Iterator<Item = f64> {
         self.pieces.iter().map(|(start, _)| *start)
     }

@@ -12,7 +12,7 @@
 mod closed;
 pub(super) mod energy;
 pub(super) mod path;
-mod place;
+pub(super) mod place;
 pub(super) mod rest;
 
 use std::fmt;
@@ -24,6 +24,7 @@ pub use rest::{NoRest, REST_FRACTION, Rest};
 pub(super) use rest::{first_swing, has_rested};
 
 use super::model::{Model, Side, Start};
+use super::si::greatest;
 use crate::decimal::significant;
 use crate::interrupt::Interrupt;
 
@@ -383,7 +384,37 @@ pub struct Difference {
     pub until: f64,
 }
 
+/// A contact shorter than this part of the time at which it ends has lost digits of its duration to the clock.
+pub(super) const CLOCK: f64 = 1e-6;
+
 impl Simulation {
+    /// The greatest force of the barrier in a contact, its damping included, in units of m g, looked for on the path. `None` where no path is kept,
+    /// where that of a chain is only near the motion, and where the contact did not end or is too short for the clock.
+    ///
+    /// ```
+    /// use lindstedt::impact::{Integrator, Model, Settings, Start, simulate};
+    ///
+    /// let model = Model { gamma: 1e4, ..Model::default() };
+    /// let motion = simulate(&model, Start::default(), Integrator::Taylor, &Settings::default())?;
+    /// let first = motion.impacts[0];
+    /// let force = motion.peak_force(&first).ok_or("a force")?;
+    /// assert!((force / (1e4 * first.penetration.powf(1.5)) - 1.0).abs() < 1e-9); // without damping that of the greatest depth
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn peak_force(&self, impact: &Contact) -> Option<f64> {
+        let (exit, barrier) = (impact.exit_time?, self.model.barrier(impact.side)?);
+        let is_known = self.integrator != Integrator::Chain && !self.path.pieces().is_empty();
+        if !is_known || exit - impact.entry_time < CLOCK * exit {
+            return None;
+        }
+        let sign = impact.side.sign();
+        let force = |t: f64| match self.path.at(t) {
+            Some((x, velocity)) => self.model.contact(sign * (x - barrier), sign * velocity),
+            None => 0.0,
+        };
+        Some(greatest(force, impact.entry_time, exit))
+    }
+
     /// Compares the paths at so many times, as far as both go.
     pub fn difference(&self, other: &Self, count: usize) -> Difference {
         let until = self.end_time.min(other.end_time);

@@ -1,10 +1,11 @@
 //! What the numbers of a search say, in sentences: what decides, how its optimum compares with the paper's design and with other searches.
 
 use super::super::materials::percent;
-use super::with_unit;
+use super::{closed_forms_off, with_unit};
 use crate::decimal::{decimal, significant};
 use crate::genetic::Stop;
-use crate::optimize::{Decision, Objective, Role, Sensitivity, Study, WITHIN};
+use crate::impact::Parameter;
+use crate::optimize::{Decision, Objective, Role, Sensitivity, Study, TABLE_4, WITHIN};
 
 /// `mass, radius and modulus`
 fn listed(names: &[&str]) -> String {
@@ -19,11 +20,16 @@ fn listed(names: &[&str]) -> String {
 pub fn optimization_sentences(study: &Study) -> Vec<String> {
     let mut sentences = Vec::new();
     if !study.complete {
-        sentences.push(format!(
-            "Stopped before the end: {} of {} runs are in this result, and what was left is missing.",
-            study.runs.len(),
-            study.question.runs
-        ));
+        let (done, all) = (study.runs.len(), study.question.runs);
+        let cut_short = study.runs.iter().any(|run| run.stop == Stop::Interrupted);
+        sentences.push(match done < all || cut_short {
+            true => format!(
+                "Stopped before the end: {done} of {all} runs are in this result, and what was left is missing."
+            ),
+            false => format!(
+                "Stopped before the end: all {all} runs are in this result, the comparison with other searches is missing."
+            ),
+        });
     }
     match study.question.objectives.len() {
         1 => {
@@ -36,6 +42,28 @@ pub fn optimization_sentences(study: &Study) -> Vec<String> {
         _ => sentences.extend(the_front(study)),
     }
     sentences
+}
+
+/// The part by which a value lies above another one; `None` where that is zero and this is not.
+fn apart(value: f64, reference: f64) -> Option<f64> {
+    let apart = match value == reference {
+        true => 0.0,
+        false => value / reference - 1.0,
+    };
+    Some(apart).filter(|apart| apart.is_finite())
+}
+
+/// A search that finds a design better by this part has shown that the best one here is no optimum.
+const BETTER: f64 = 1e-3;
+
+/// Who found a better design than the best one of the study, and by which part it is better; `None` where nobody did.
+fn found_better(study: &Study, decision: &Decision) -> Option<(String, f64)> {
+    let own = study.spread()?.best;
+    let rivals = study.rivals.iter();
+    let rivals = rivals.filter_map(|rival| Some((rival.name.to_owned(), -apart(rival.spread()?.best, own)?)));
+    let alone = apart(decision.least, decision.value).map(|apart| ("a look around it".to_owned(), -apart));
+    let best = rivals.chain(alone).max_by(|one, other| one.1.total_cmp(&other.1));
+    best.filter(|(_, better)| *better > BETTER)
 }
 
 fn what_decides(study: &Study) -> Vec<String> {
@@ -54,18 +82,35 @@ fn what_decides(study: &Study) -> Vec<String> {
         let names: Vec<&str> = found.iter().map(|sensitivity| sensitivity.parameter.name()).collect();
         listed(&names)
     };
-    let (lower, upper) = (of(Role::Lower), of(Role::Upper));
     let mut sentences = Vec::new();
-    let ends: Vec<String> = [(&lower, "lower"), (&upper, "upper")]
+    let better = found_better(study, decision);
+    if let Some((name, better)) = &better {
+        sentences.push(format!(
+            "The best design here is no optimum: {name} found one that is {} better. Give the search a larger population and more generations; \
+             what follows is said of the design that was found.",
+            percent(*better)
+        ));
+    }
+    let off = closed_forms_off(study);
+    if off > WITHIN {
+        sentences.push(format!(
+            "Closed forms are up to {} off for the best designs: what follows is said by closed forms, and by integration it may be otherwise.",
+            percent(off)
+        ));
+    }
+    let ends: Vec<String> = [(of(Role::Lower), "lower"), (of(Role::Upper), "upper")]
         .into_iter()
         .filter(|(found, _)| !found.is_empty())
-        .map(|(found, end)| format!("{} at the {end} limit", names(found)))
+        .map(|(found, end)| format!("{} at the {end} limit", names(&found)))
         .collect();
     if !ends.is_empty() {
-        sentences.push(format!(
-            "The optimum is a corner of the box, {}: the limit decides, not the search, and moving it moves the optimum.",
-            ends.join(", ")
-        ));
+        sentences.push(match better {
+            None if off <= WITHIN => format!(
+                "The optimum is a corner of the box, {}: the limit decides, not the search, and moving it moves the optimum.",
+                ends.join(", ")
+            ),
+            _ => format!("Moved alone, the best are {}.", ends.join(", ")),
+        });
     }
     let flat = of(Role::Flat);
     if !flat.is_empty() {
@@ -78,12 +123,21 @@ fn what_decides(study: &Study) -> Vec<String> {
             names(&trade)
         ));
     }
-    let limited = of(Role::Limit);
-    if !limited.is_empty() {
+    // Whether anything that the constraint forbids is better.
+    let relieved = |sensitivity: &&Sensitivity| {
+        sensitivity
+            .range
+            .is_some_and(|[least, _]| least < decision.least.min(decision.value) * (1.0 - BETTER))
+    };
+    let (relieved, held): (Vec<_>, Vec<_>) = of(Role::Limit).into_iter().partition(relieved);
+    if !relieved.is_empty() {
         sentences.push(format!(
             "A constraint stops {}: without it {objective} would be less.",
-            names(&limited)
+            names(&relieved)
         ));
+    }
+    if !held.is_empty() {
+        sentences.push(format!("A constraint stops {}.", names(&held)));
     }
     if !decision.active.is_empty() {
         sentences.push(format!(
@@ -113,7 +167,7 @@ fn flat_directions(flat: &[&Sensitivity], objective: &str) -> String {
     let but = if free { "" } else { " but where constraints end" };
     let names: Vec<&str> = flat.iter().map(|sensitivity| sensitivity.parameter.name()).collect();
     format!(
-        "Flat directions: over the whole range, the others held, {objective} changes by less than 1 % ({}); what was found for {} says \
+        "Flat directions: over the whole range, the others held, {objective} changes by no more than 1 % ({}); what was found for {} says \
          nothing{but}.",
         changes.join(", "),
         listed(&names)
@@ -121,10 +175,13 @@ fn flat_directions(flat: &[&Sensitivity], objective: &str) -> String {
 }
 
 fn near_the_best(study: &Study, decision: &Decision) -> String {
-    let share = match decision.share {
-        0.0 => "too small a part of the box to be met by chance".to_owned(),
-        share => format!("{} of the box", percent(share)),
-    };
+    if decision.share == 0.0 {
+        return format!(
+            "None of {} designs that were drawn from the box and from what is as good alone is within {} % of the best.",
+            decision.drawn,
+            decimal(100.0 * WITHIN)
+        );
+    }
     let extents: Vec<String> = study
         .question
         .variables
@@ -141,8 +198,9 @@ fn near_the_best(study: &Study, decision: &Decision) -> String {
         })
         .collect();
     format!(
-        "Designs within {} % of the best are {share}: {}.",
+        "Designs within {} % of the best are {} of the box; those that were drawn: {}.",
         decimal(100.0 * WITHIN),
+        percent(decision.share),
         extents.join(", ")
     )
 }
@@ -151,14 +209,18 @@ fn the_unit(study: &Study) -> Option<String> {
     let ends = study.decision.as_ref()?.ends?;
     let pair = |[short, long]: [f64; 2]| [significant(short, 4), significant(long, 4)];
     let ([short, long], [from, to], [at, until]) = (pair(ends.seconds), pair(ends.dimensionless), pair(ends.lengths));
-    let best = |[short, long]: [f64; 2]| if short < long { &at } else { &until };
-    let same = best(ends.seconds) == best(ends.dimensionless);
-    let verdict = match same {
-        true => "the unit does not move the optimum".to_owned(),
-        false => format!(
-            "in seconds the best length is {}, in 1/omega it is {}: the choice moves the optimum from one end to the other",
-            best(ends.seconds),
-            best(ends.dimensionless)
+    let [in_seconds, in_units] = ends.best.map(|length| significant(length, 3));
+    let mut turned = ends.best;
+    turned.sort_by(f64::total_cmp);
+    let verdict = match ends.best {
+        [one, other] if one == other => format!("in both the best length, the rest held, is {in_seconds} m"),
+        _ => format!(
+            "the rest held, in seconds the best length is {in_seconds} m, in 1/omega it is {in_units} m: the choice moves the optimum{}",
+            if turned == ends.lengths {
+                " from one end to the other"
+            } else {
+                ""
+            }
         ),
     };
     Some(format!(
@@ -174,56 +236,95 @@ fn the_papers(study: &Study) -> Option<String> {
         return Some("The paper's Table 5 does not rest in the time allowed under these assumptions.".to_owned());
     };
     let least = best.values[0];
-    let outside: Vec<&str> = study
-        .question
+    let question = &study.question;
+    let outside: Vec<&str> = question
         .variables
         .iter()
         .zip(&papers.point)
         .filter(|(variable, value)| !(variable.lower..=variable.upper).contains(value))
         .map(|(variable, _)| variable.parameter.name())
         .collect();
-    let place = match outside.is_empty() {
-        true => String::new(),
-        false => format!(" It lies outside these limits: {}.", listed(&outside)),
+    let other: Vec<&str> = TABLE_4
+        .iter()
+        .map(|(parameter, ..)| *parameter)
+        .filter(|parameter| {
+            question
+                .variables
+                .iter()
+                .all(|variable| variable.parameter != *parameter)
+        })
+        .filter(|parameter| question.case.get(*parameter) != papers.case.get(*parameter))
+        .map(Parameter::name)
+        .collect();
+    let broken = question.broken(papers);
+    let mut remarks = String::new();
+    if !outside.is_empty() {
+        remarks += &format!(" It lies outside these limits: {}.", listed(&outside));
+    }
+    if !other.is_empty() {
+        remarks += &format!(" It differs in what is held fixed here: {}.", listed(&other));
+    }
+    if !broken.is_empty() {
+        remarks += &format!(" It breaks {}.", broken.join("; "));
+    }
+    let far = apart(value, least);
+    let allowed = remarks.is_empty();
+    let judged = match far {
+        Some(far) if far < -BETTER && allowed => "better than any design that the search found",
+        Some(far) if far < 0.0 && !allowed => "better than any design found that is allowed here",
+        Some(far) if far <= WITHIN && allowed => "as good as the best",
+        Some(far) if far <= WITHIN => "no more than 1 % worse than the best that is allowed here",
+        _ => "not the best under these assumptions, which the paper does not print",
     };
-    let far = value / least - 1.0;
-    let judged = match far <= WITHIN {
-        true if far < 0.0 && !outside.is_empty() => "better than any design between the limits",
-        true => "as good as the best",
-        false => "not the best under these assumptions, which the paper does not print",
+    let compared = match far {
+        Some(0.0) => "the same as".to_owned(),
+        Some(far) => format!(
+            "{} {} than",
+            percent(far.abs()),
+            if far < 0.0 { "less" } else { "more" }
+        ),
+        None => "more than".to_owned(),
     };
     Some(format!(
-        "The paper's Table 5 has {} {}, {} {} than the best design's {}: {judged}.{place}",
+        "The paper's Table 5 has {} {}, {compared} the best design's {}: {judged}.{remarks}",
         objective.meaning(),
         with_unit(objective, value),
-        percent(far.abs()),
-        if far < 0.0 { "less" } else { "more" },
         with_unit(objective, least)
     ))
 }
 
 fn the_rivals(study: &Study) -> Option<String> {
     let own = study.spread()?.median;
+    let runs = study.runs.len();
+    let of_runs = |found: usize| match found == runs {
+        true => String::new(),
+        false => format!(" in the {found} of {runs} runs that found one"),
+    };
     let said: Vec<String> = study
         .rivals
         .iter()
-        .filter_map(|rival| {
-            let apart = rival.spread()?.median / own - 1.0;
-            let words = match apart.abs() < 5e-7 {
-                true => "the same".to_owned(),
-                false => format!(
+        .map(|rival| {
+            let found = rival.values.iter().filter(|value| value.is_finite()).count();
+            let Some(spread) = rival.spread() else {
+                return format!("{} finds no design", rival.name);
+            };
+            let words = match apart(spread.median, own) {
+                Some(apart) if apart.abs() < 5e-7 => "the same".to_owned(),
+                Some(apart) => format!(
                     "{} {}",
                     percent(apart.abs()),
                     if apart > 0.0 { "worse" } else { "better" }
                 ),
+                None => with_unit(study.objective(), spread.median) + " instead of 0",
             };
-            Some(format!("{} finds {words}", rival.name))
+            format!("{} finds {words}{}", rival.name, of_runs(found))
         })
         .collect();
     match said.is_empty() {
         true => None,
         false => Some(format!(
-            "What the genetic algorithm is worth: with as many evaluations, in the median, {}.",
+            "What the genetic algorithm is worth: with as many evaluations, in the median{}, {}.",
+            of_runs(study.values().len()),
             said.join(", ")
         )),
     }
@@ -252,9 +353,10 @@ fn the_generations(study: &Study) -> Option<String> {
              window of {window} allows"
         ),
     };
+    let either = if count > 0 && at_once == count { " either" } else { "" };
     Some(format!(
         "Convergence: {end}; the median run was within 0.1 % of its end {when}. The paper's 51 generations are the earliest end with the usual \
-         window of 50: its best value hardly moved either."
+         window of 50: its best value hardly moved{either}."
     ))
 }
 
@@ -288,7 +390,7 @@ fn the_front(study: &Study) -> Vec<String> {
         .filter_map(extreme)
         .collect();
     if study.finalists.len() == 1 {
-        sentences.push("One design is the best in everything: these wishes do not conflict.".to_owned());
+        sentences.push("Of the designs that were followed one is the best in everything.".to_owned());
     }
     sentences
 }

@@ -309,7 +309,7 @@ impl Problem {
             (None, true) => return Err(OptimizeFileError::NoMainMass),
             (Some(_), false) => return Err(OptimizeFileError::MainMassAlone),
             (Some(section), true) => {
-                let main_mass = section.main_mass(false)?;
+                let main_mass = section.main_mass()?;
                 if main_mass.displacement == 0.0 && main_mass.speed == 0.0 {
                     return Err(PrimaryFileError::AtRest.into());
                 }

@@ -20,6 +20,7 @@
 mod equations;
 mod follow;
 mod linear;
+mod parameter;
 mod path;
 mod si;
 mod sweep;
@@ -33,6 +34,7 @@ use crate::system::SystemError;
 
 pub use follow::simulate_primary;
 pub use linear::{Alone, Others};
+pub use parameter::{PrimaryParameter, UnknownPrimaryParameter};
 pub use path::PrimaryState;
 pub use si::MainMass;
 pub use sweep::{PrimaryRow, sweep_primary};

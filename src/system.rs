@@ -145,6 +145,8 @@ impl Default for Options {
 pub struct Event {
     expression: Expr,
     stops: bool,
+    /// The only direction of crossing that counts, where not both do: `true` upwards.
+    rising: Option<bool>,
 }
 
 impl Event {
@@ -153,15 +155,50 @@ impl Event {
         Self {
             expression,
             stops: false,
+            rising: None,
         }
     }
 
     /// An event that ends the path.
     pub fn stop(expression: Expr) -> Self {
         Self {
-            expression,
             stops: true,
+            ..Self::record(expression)
         }
+    }
+
+    /// Counts only where the expression grows through zero.
+    ///
+    /// ```
+    /// use lindstedt::expr::parse_expression;
+    /// use lindstedt::system::{Event, Options, System};
+    ///
+    /// let wave = System::parse(&[("x", "v"), ("v", "-x")], &[])?;
+    /// let upwards = Event::stop(parse_expression("x")?).rising();
+    /// let path = wave.solve(0.0, &[1.0, 0.0], 10.0, &[upwards], &Options::default())?;
+    /// assert!((path.end() - 1.5 * std::f64::consts::PI).abs() < 1e-13); // cos t falls through zero at pi/2
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn rising(self) -> Self {
+        Self {
+            rising: Some(true),
+            ..self
+        }
+    }
+
+    /// Counts only where the expression falls through zero.
+    #[must_use]
+    pub fn falling(self) -> Self {
+        Self {
+            rising: Some(false),
+            ..self
+        }
+    }
+
+    /// Whether a crossing in this direction counts.
+    fn counts(&self, rising: bool) -> bool {
+        self.rising.is_none_or(|counted| counted == rising)
     }
 }
 

@@ -2,23 +2,24 @@
 
 use lindstedt::Interrupt;
 use lindstedt::export::{json, primary, significant};
-use lindstedt::impact::Units;
-use lindstedt::impact::primary::{PrimaryRow, PrimarySettings, PrimaryStop, simulate_primary, sweep_primary};
-use lindstedt::impact::sweep::Axis;
+use lindstedt::impact::primary::{
+    PrimaryParameter, PrimarySettings, PrimaryStop, UnknownPrimaryParameter, simulate_primary, sweep_primary,
+};
+use lindstedt::impact::sweep::{Axis, grid_size, grid_values};
 use lindstedt::problem::Problem;
-use lindstedt::report::{self, PrimaryReport};
+use lindstedt::report::{self, PrimaryReport, PrimarySweepReport};
 use lindstedt::verify::Verdict;
 
-use super::answer::{Answer, no_such};
+use super::answer::{Answer, Draw, no_such};
 use super::files::width;
-use super::progress;
+use super::progress::{self, MOTIONS};
 use super::{Common, Failure, Format, Outcome, STOP, json_text};
 
 /// What is asked of a main mass.
 pub(super) struct Asked<'a> {
     /// Times at which the states are wanted.
     pub samples: &'a [f64],
-    /// The frequencies of the force, in rad/s.
+    /// The parameters that are swept, with their values.
     pub sweep: &'a [Axis],
     pub common: &'a Common,
 }
@@ -34,20 +35,12 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
     }
     match asked.sweep {
         [] => one(problem, asked),
-        [axis] if axis.name() == "frequency" => many(problem, asked, axis),
-        [_, _, ..] => Err(Failure::Usage(
-            "a main mass is swept over the frequency of its force alone: give one --sweep, frequency=5:20:61, in rad/s"
-                .to_owned(),
-        )),
-        [axis, ..] => Err(Failure::Usage(format!(
-            "a main mass is swept over the frequency of its force alone, not over `{}`: --sweep frequency=5:20:61, in rad/s",
-            axis.name()
-        ))),
+        axes => many(problem, asked, axes),
     }
 }
 
 fn one(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
-    let (common, file) = (asked.common, problem.primary_case(false));
+    let (common, file) = (asked.common, problem.primary_case(&[]));
     let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
     let settings = PrimarySettings {
         interrupt: Interrupt::by(&STOP),
@@ -94,33 +87,48 @@ fn one(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
     })
 }
 
-fn many(problem: &Problem, asked: &Asked, axis: &Axis) -> Result<Outcome, Failure> {
-    if !asked.samples.is_empty() {
-        return Err(Failure::Usage(
-            "a sweep reports one line a motion: leave out --sample".to_owned(),
-        ));
-    }
+fn many(problem: &Problem, asked: &Asked, axes: &[Axis]) -> Result<Outcome, Failure> {
     let common = asked.common;
-    let file = problem
-        .primary_case(true)
+    check_sweep(asked)?;
+    let parameters: Vec<PrimaryParameter> = axes
+        .iter()
+        .map(|axis| axis.name().parse())
+        .collect::<Result<_, UnknownPrimaryParameter>>()
         .map_err(|error| Failure::refused(&error, error.help()))?;
-    let frequencies: Vec<f64> = axis.values().iter().map(|value| value * file.units.time()).collect();
-    let settings = PrimarySettings {
-        interrupt: Interrupt::by(&STOP),
-        ..file.settings
-    };
-    let bar = progress::bar(frequencies.len(), "{bar:40} {pos}/{len} frequencies, {eta} left");
-    let progress = |done: usize| bar.inc(done as u64);
-    let rows =
-        sweep_primary(file.case, &frequencies, &settings, progress).map_err(|error| Failure::refused(&error, None))?;
+    if let Some(index) = (1..parameters.len()).find(|index| parameters[..*index].contains(&parameters[*index])) {
+        return Err(Failure::Usage(format!("`{}` is swept twice", parameters[index].name())));
+    }
+    let total = grid_size(axes).map_err(|error| Failure::refused(&error, None))?;
+    let (mut motions, mut units) = (Vec::with_capacity(total), Vec::with_capacity(total));
+    for number in 0..total {
+        let varied: Vec<(PrimaryParameter, f64)> = parameters.iter().copied().zip(grid_values(axes, number)).collect();
+        let file = problem.primary_case(&varied);
+        let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
+        let settings = PrimarySettings {
+            interrupt: Interrupt::by(&STOP),
+            ..file.settings
+        };
+        motions.push((file.case, settings));
+        units.push(file.units);
+    }
+    let bar = progress::bar(total, MOTIONS);
+    let rows = sweep_primary(&motions, |done| bar.inc(done as u64))
+        .map_err(|(number, error)| Failure::Refused(format!("motion {}: {error}", number + 1)))?;
     bar.finish_and_clear();
+    let report = PrimarySweepReport {
+        axes,
+        parameters: &parameters,
+        rows: &rows,
+        units: &units,
+    };
+    let draw: Draw = &|| sweep_picture(&report);
     let answer = Answer {
-        document: &report::primary_sweep(&rows, &file.units),
+        document: &report::primary_sweep(&report),
         width: width(common.output.as_deref()),
-        picture: Some(&|| sweep_picture(&rows, &file.units)),
+        picture: (axes.len() == 1).then_some(draw),
         other: &|format| match format {
-            Format::Csv => Ok(primary::sweep_csv(&rows)),
-            Format::Json => json_text(&json::primary_sweep(&rows, &file.units)),
+            Format::Csv => Ok(primary::sweep_csv(&report)),
+            Format::Json => json_text(&json::primary_sweep(&report)),
             format => no_such(format),
         },
     };
@@ -133,13 +141,37 @@ fn many(problem: &Problem, asked: &Asked, axis: &Axis) -> Result<Outcome, Failur
     })
 }
 
+/// Refuses what a sweep leaves no place for.
+fn check_sweep(asked: &Asked) -> Result<(), Failure> {
+    if !asked.samples.is_empty() {
+        return Err(Failure::Usage(
+            "a sweep reports one line a motion: leave out --sample".to_owned(),
+        ));
+    }
+    if asked.sweep.len() > 1 && asked.common.draws() {
+        return Err(Failure::Usage(
+            "--plot draws curves over one parameter of a main mass, but more are swept: leave out --plot, or give the others in the \
+             file"
+                .to_owned(),
+        ));
+    }
+    let common = |axis: &&Axis| ["duration", "integrator_tolerance", "step_limit"].contains(&axis.name());
+    match asked.sweep.iter().find(common) {
+        Some(axis) => Err(Failure::Refused(format!(
+            "`{}` is the same for all motions of a sweep: give it in [run]",
+            axis.name()
+        ))),
+        None => Ok(()),
+    }
+}
+
 #[cfg(not(feature = "plot"))]
 fn picture(_: &PrimaryReport) -> Result<String, Failure> {
     super::no_pictures()
 }
 
 #[cfg(not(feature = "plot"))]
-fn sweep_picture(_: &[PrimaryRow], _: &Units) -> Result<String, Failure> {
+fn sweep_picture(_: &PrimarySweepReport) -> Result<String, Failure> {
     super::no_pictures()
 }
 
@@ -149,6 +181,6 @@ fn picture(report: &PrimaryReport) -> Result<String, Failure> {
 }
 
 #[cfg(feature = "plot")]
-fn sweep_picture(rows: &[PrimaryRow], units: &Units) -> Result<String, Failure> {
-    primary::sweep_picture(rows, units).map_err(|error| Failure::refused(&error, None))
+fn sweep_picture(report: &PrimarySweepReport) -> Result<String, Failure> {
+    primary::sweep_picture(report).map_err(|error| Failure::refused(&error, None))
 }

@@ -142,8 +142,8 @@ fn main_mass(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failur
     ];
     if let Some((option, _)) = foreign.iter().find(|(_, given)| *given) {
         return Err(Failure::Usage(format!(
-            "{option} belongs to the pendulum alone: a file with [primary] is followed by power series, on all cores where its force \
-             is swept"
+            "{option} belongs to the pendulum alone: a file with [primary] is followed by power series, on all cores where \
+             something is swept"
         )));
     }
     primary::run(

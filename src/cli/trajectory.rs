@@ -269,8 +269,14 @@ fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
     let parameters = course.parameters();
     for (index, name) in names.iter().enumerate() {
         if !parameters.contains(name) && !course.rates.states.contains(name) {
+            let known: Vec<String> = parameters
+                .iter()
+                .chain(&course.rates.states)
+                .map(ToString::to_string)
+                .collect();
             return Err(Failure::Refused(format!(
-                "--sweep: `{name}` is neither a parameter nor a state of the equations, so nothing would vary"
+                "--sweep: `{name}` is neither a parameter nor a state of the equations, so nothing would vary: choose one of {}",
+                known.join(", ")
             )));
         }
         if names[..index].contains(name) {

@@ -3,13 +3,17 @@
 use std::fmt::Write as _;
 
 #[cfg(feature = "plot")]
-use super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, figure};
+use super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, Scale, figure};
 #[cfg(feature = "plot")]
 use crate::decimal::decimal;
 #[cfg(feature = "plot")]
 use crate::impact::Units;
-use crate::impact::primary::PrimaryRow;
-use crate::report::PrimaryReport;
+#[cfg(feature = "plot")]
+use crate::impact::primary::{Alone, PrimaryParameter};
+use crate::impact::primary::{Others, PrimaryRow, PrimaryStop};
+#[cfg(feature = "plot")]
+use crate::impact::sweep::Spacing;
+use crate::report::{PrimaryReport, PrimarySweepReport};
 
 /// The points of a curve.
 const POINTS: u32 = 2000;
@@ -39,7 +43,7 @@ fn times(report: &PrimaryReport) -> Vec<f64> {
 /// use lindstedt::report::PrimaryReport;
 ///
 /// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\ndisplacement = 0.02\n[run]\nduration = 20".parse()?;
-/// let asked = file.primary_case(false)?;
+/// let asked = file.primary_case(&[])?;
 /// let motion = simulate_primary(asked.case, &asked.settings)?;
 /// let table = lindstedt::export::primary::csv(&PrimaryReport { motion: &motion, units: &asked.units, samples: &[1.0] });
 /// assert_eq!(table.lines().count(), 3);
@@ -66,26 +70,61 @@ pub fn csv(report: &PrimaryReport) -> String {
     text
 }
 
-/// A row for every frequency.
+/// A row for every motion of a sweep: the values that are swept, in their own units, then what came of it. Of a motion that was never begun
+/// the places stay empty.
 ///
 /// ```
-/// assert_eq!(lindstedt::export::primary::sweep_csv(&[]).lines().count(), 2);
+/// use lindstedt::report::PrimarySweepReport;
+///
+/// let report = PrimarySweepReport { axes: &[], parameters: &["frequency".parse()?], rows: &[], units: &[] };
+/// assert!(lindstedt::export::primary::sweep_csv(&report).starts_with("# units: frequency rad/s, "));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn sweep_csv(rows: &[PrimaryRow]) -> String {
-    let mut text = String::from("# units: frequency omega, amplitudes L\nfrequency,amplitude,locked,without,impacts\n");
+pub fn sweep_csv(report: &PrimarySweepReport) -> String {
+    const RESULTS: [(&str, &str); 11] = [
+        ("amplitude", "L"),
+        ("locked", "L"),
+        ("without", "L"),
+        ("impacts", "1"),
+        ("rest_time", "1/omega"),
+        ("rest_locked", "1/omega"),
+        ("rest_without", "1/omega"),
+        ("all_impacts", "1"),
+        ("time_unit", "s"),
+        ("length_unit", "m"),
+        ("complete", "-"),
+    ];
+    let swept = report.parameters.iter().map(|parameter| match parameter.unit() {
+        "" => (parameter.name(), "1"),
+        unit => (parameter.name(), unit),
+    });
+    let columns: Vec<(&str, &str)> = swept.chain(RESULTS).collect();
+    let units: Vec<String> = columns.iter().map(|(name, unit)| format!("{name} {unit}")).collect();
+    let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+    let mut text = format!("# units: {}\n{}\n", units.join(", "), names.join(","));
     let or_none = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
-    for row in rows {
-        let (locked, without) = (
-            or_none(row.others.locked.amplitude),
-            or_none(row.others.without.amplitude),
-        );
-        let _ = writeln!(
-            text,
-            "{},{},{locked},{without},{}",
-            row.frequency, row.amplitude, row.impacts
-        );
+    for (number, (row, units)) in report.rows.iter().zip(report.units).enumerate() {
+        let count = |count: usize| row.is_begun().then(|| count.to_string()).unwrap_or_default();
+        let Others { locked, without } = row.others;
+        let mut cells: Vec<String> = report.values(number).iter().map(f64::to_string).collect();
+        let amplitude = row.is_begun().then_some(row.amplitude);
+        cells.extend([amplitude, locked.amplitude, without.amplitude].map(or_none));
+        cells.push(count(row.impacts));
+        cells.extend([rest_time(row), locked.rest_time, without.rest_time].map(or_none));
+        cells.extend([
+            count(row.all_impacts),
+            units.time().to_string(),
+            units.length.to_string(),
+        ]);
+        cells.push((row.stop == PrimaryStop::Duration).to_string());
+        let _ = writeln!(text, "{}", cells.join(","));
     }
     text
+}
+
+/// The rest time of a motion that nothing drives.
+pub(super) fn rest_time(row: &PrimaryRow) -> Option<f64> {
+    row.rest_time.ok().filter(|_| !row.is_driven())
 }
 
 /// The main mass with its damper, locked and without; the pendulum between its barriers.
@@ -99,7 +138,7 @@ pub fn sweep_csv(rows: &[PrimaryRow]) -> String {
 /// use lindstedt::report::PrimaryReport;
 ///
 /// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\ndisplacement = 0.02\n[run]\nduration = 20".parse()?;
-/// let asked = file.primary_case(false)?;
+/// let asked = file.primary_case(&[])?;
 /// let motion = simulate_primary(asked.case, &asked.settings)?;
 /// let report = PrimaryReport { motion: &motion, units: &asked.units, samples: &[] };
 /// assert!(lindstedt::export::primary::picture(&report)?.starts_with("<svg"));
@@ -208,44 +247,85 @@ fn decay_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Option<Vec<(
     points.collect()
 }
 
-/// The amplitude of the main mass over the frequency of its force.
+/// The amplitude of the main mass in the long run, or its rest time where nothing drives it, over the values of one parameter.
 ///
 /// # Errors
-/// As [`figure`].
+/// More than one parameter, or as [`figure`].
 ///
 /// ```
 /// use lindstedt::impact::primary::sweep_primary;
+/// use lindstedt::impact::sweep::Axis;
 /// use lindstedt::problem::Problem;
+/// use lindstedt::report::PrimarySweepReport;
 ///
 /// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\nforce = 0.01\ndamping = 0.5\n[run]\nduration = 20".parse()?;
-/// let asked = file.primary_case(true)?;
-/// let rows = sweep_primary(asked.case, &[0.8, 1.0], &asked.settings, |_| ())?;
-/// assert!(lindstedt::export::primary::sweep_picture(&rows, &asked.units)?.starts_with("<svg"));
+/// let (axis, parameter): (Axis, _) = ("frequency=9:11:2".parse()?, "frequency".parse()?);
+/// let asked: Result<Vec<_>, _> = axis.values().iter().map(|value| file.primary_case(&[(parameter, *value)])).collect();
+/// let (motions, units): (Vec<_>, Vec<_>) = asked?.into_iter().map(|asked| ((asked.case, asked.settings), asked.units)).unzip();
+/// let rows = sweep_primary(&motions, |_| ()).map_err(|(_, error)| error)?;
+/// let report = PrimarySweepReport { axes: &[axis], parameters: &[parameter], rows: &rows, units: &units };
+/// assert!(lindstedt::export::primary::sweep_picture(&report)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[cfg(feature = "plot")]
-pub fn sweep_picture(rows: &[PrimaryRow], units: &Units) -> Result<String, FigureError> {
-    let points = |value: &dyn Fn(&PrimaryRow) -> Option<f64>| -> Vec<(f64, f64)> {
-        let point = |row: &PrimaryRow| Some((row.frequency / units.time(), value(row)? * units.length));
-        rows.iter().filter_map(point).collect()
+pub fn sweep_picture(report: &PrimarySweepReport) -> Result<String, FigureError> {
+    let ([axis], [parameter]) = (report.axes, report.parameters) else {
+        return Err(FigureError::Empty("the sweep".to_owned()));
     };
-    let with = points(&|row| Some(row.amplitude));
-    let locked = points(&|row| row.others.locked.amplitude);
-    let without = points(&|row| row.others.without.amplitude);
-    let curve = |label, points, style| Curve { label, points, style };
+    let driven = report.is_driven();
+    let points = |value: &dyn Fn(&PrimaryRow, &Units) -> Option<f64>| -> Vec<(f64, f64)> {
+        let rows = axis.values().iter().zip(report.rows.iter().zip(report.units));
+        let mut points: Vec<(f64, f64)> = rows
+            .filter_map(|(place, (row, units))| Some((*place, value(row, units)?)))
+            .collect();
+        // A list may go to and fro, a curve does not.
+        points.sort_by(|one, other| one.0.total_cmp(&other.0));
+        points
+    };
+    let alone = |of: fn(&Others) -> Alone| {
+        points(&|row, units| match driven {
+            true => Some(of(&row.others).amplitude? * units.length),
+            false => Some(of(&row.others).rest_time? * units.time()),
+        })
+    };
+    let with = points(&|row, units| match driven {
+        true => row.is_begun().then_some(row.amplitude * units.length),
+        false => Some(rest_time(row)? * units.time()),
+    });
+    let (locked, without) = (alone(|others| others.locked), alone(|others| others.without));
+    let curves = [
+        ("without", &without, CurveStyle::RUNGE_KUTTA),
+        ("damper locked", &locked, CurveStyle::SECOND_FORMULA),
+        ("with its damper", &with, CurveStyle::FORMULA),
+    ];
+    let curves = curves.into_iter().filter(|(_, points, _)| points.len() > 1);
+    let x_label = match (parameter, parameter.unit()) {
+        (PrimaryParameter::Frequency, unit) => format!("frequency of the force ({unit})"),
+        (_, "") => parameter.name().to_owned(),
+        (_, unit) => format!("{} ({unit})", parameter.name()),
+    };
+    let is_logarithmic = axis.spacing() == Spacing::Logarithmic && axis.ends()[0] > 0.0;
     let panel = Panel {
-        title: "Main mass in the long run",
-        x_label: "frequency of the force (rad/s)",
-        y_label: "amplitude (m)",
-        curves: vec![
-            curve("without", without.as_slice(), CurveStyle::RUNGE_KUTTA),
-            curve("damper locked", locked.as_slice(), CurveStyle::SECOND_FORMULA),
-            curve("with its damper", with.as_slice(), CurveStyle::FORMULA),
-        ],
+        title: match driven {
+            true => "Main mass in the long run",
+            false => "Rest of the main mass",
+        },
+        x_label: &x_label,
+        y_label: if driven { "amplitude (m)" } else { "rest time (s)" },
+        x_scale: match is_logarithmic {
+            true => Scale::Logarithmic,
+            false => Scale::Linear,
+        },
+        curves: curves
+            .map(|(label, points, style)| Curve { label, points, style })
+            .collect(),
         ..Panel::default()
     };
-    figure(
-        &[panel],
-        "Locked and without: in closed form; with its damper: the largest displacement in the last quarter of each run.",
-    )
+    let caption = match driven {
+        true => {
+            "Locked and without: in closed form; with its damper: the largest displacement in the last quarter of each run."
+        }
+        false => "When the envelope of the main mass is down to a tenth. Locked and without: in closed form.",
+    };
+    figure(&[panel], caption)
 }

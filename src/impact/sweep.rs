@@ -122,6 +122,11 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// Whether the motion was begun before all were asked to end.
+    pub fn is_begun(&self) -> bool {
+        !matches!(self.stop, Stop::Interrupted { t } if t == 0.0)
+    }
+
     /// What there is to say of a motion.
     pub fn of(motion: &Simulation) -> Self {
         let largest = |value: fn(&Contact) -> f64| motion.impacts.iter().map(value).fold(0.0, f64::max);

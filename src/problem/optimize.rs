@@ -309,7 +309,7 @@ impl Problem {
             (None, true) => return Err(OptimizeFileError::NoMainMass),
             (Some(_), false) => return Err(OptimizeFileError::MainMassAlone),
             (Some(section), true) => {
-                let main_mass = section.main_mass(false)?;
+                let main_mass = section.main_mass()?;
                 if self.gives("[run] integrator_tolerance") {
                     return Err(PrimaryFileError::Tolerance.into());
                 }

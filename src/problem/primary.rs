@@ -2,12 +2,12 @@
 
 use thiserror::Error;
 
+use super::Problem;
 use super::document::{Pendulum, PrimarySection};
-use super::simulate::{Simulate, SimulateError};
-use super::{Problem, ProblemError};
+use super::simulate::SimulateError;
 use crate::impact::hertz::Design;
-use crate::impact::primary::{MainMass, Primary, PrimaryCase, PrimarySettings};
-use crate::impact::{Start, Units};
+use crate::impact::primary::{MainMass, Primary, PrimaryCase, PrimaryParameter, PrimarySettings};
+use crate::impact::{Parameter, Start, Units};
 
 /// A main mass with its pendulum, and how to follow them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,6 +38,9 @@ pub enum PrimaryFileError {
         /// The other one.
         other: &'static str,
     },
+    /// The mass of the main mass in two forms.
+    #[error("`primary.mass` and `mass_ratio` say the same: sweep one of them")]
+    MassTwice,
     /// A number that cannot be.
     #[error("[primary] {key} must be {wanted}, not {value}")]
     Number {
@@ -87,8 +90,8 @@ fn long_enough(primary: &Primary) -> f64 {
 }
 
 impl Problem {
-    /// The main mass of the file with its pendulum, in the units of equation (7). The pendulum hangs at rest unless the file says
-    /// otherwise; a `sweep` gives the frequency of the force.
+    /// The main mass of the file with its pendulum, in the units of equation (7), as if the file gave the values of `varied` too. The
+    /// pendulum hangs at rest unless the file says otherwise.
     ///
     /// # Errors
     /// [`PrimaryFileError`] names the key.
@@ -97,18 +100,29 @@ impl Problem {
     /// use lindstedt::problem::Problem;
     ///
     /// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\ndisplacement = 0.02".parse()?;
-    /// let asked = file.primary_case(false)?;
+    /// let asked = file.primary_case(&[])?;
     /// assert!((asked.case.primary.mass - 50.0).abs() < 1e-12); // fifty times the 11.2 g of the paper's sphere
+    /// let heavier = file.primary_case(&[("mass_ratio".parse()?, 60.0)])?;
+    /// assert!((heavier.case.primary.mass - 60.0).abs() < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn primary_case(&self, swept: bool) -> Result<PrimaryProblem, PrimaryFileError> {
-        let section = self.primary.unwrap_or_default();
+    pub fn primary_case(&self, varied: &[(PrimaryParameter, f64)]) -> Result<PrimaryProblem, PrimaryFileError> {
         if self.gives("[run] integrator_tolerance") {
             return Err(PrimaryFileError::Tolerance);
         }
         if self.given.iter().any(|key| key.starts_with("[excitation]")) {
             return Err(PrimaryFileError::Driven);
         }
+        // Without a word of the start it hangs at rest.
+        let of_pendulum: Vec<(Parameter, f64)> = varied
+            .iter()
+            .filter_map(|(parameter, value)| match parameter {
+                PrimaryParameter::Pendulum(parameter) => Some((*parameter, *value)),
+                _ => None,
+            })
+            .collect();
+        let swept: Vec<Parameter> = of_pendulum.iter().map(|(parameter, _)| *parameter).collect();
+        let starts = [Parameter::Amplitude, Parameter::Start, Parameter::Speed];
         let hanging = Self {
             pendulum: Pendulum {
                 start: Some(0.0),
@@ -116,12 +130,18 @@ impl Problem {
             },
             ..self.clone()
         };
-        let file = if self.hangs_at_rest() { &hanging } else { self };
-        let asked = Simulate::try_from(file)?;
-        let (model, Start { x, velocity }) = asked.case.motion().map_err(SimulateError::from)?;
-        let design = self.design().map_err(ProblemError::from).map_err(SimulateError::from)?;
-        let units = asked.units.unwrap_or(in_si(&design));
-        let main_mass = section.main_mass(swept)?;
+        let start_is_swept = starts.iter().any(|start| swept.contains(start));
+        let file = match self.hangs_at_rest() && !start_is_swept {
+            true => &hanging,
+            false => self,
+        };
+        let mut case = file.simulate(&swept)?.case;
+        for (parameter, value) in of_pendulum {
+            case.set(parameter, value);
+        }
+        let (model, Start { x, velocity }) = case.motion().map_err(SimulateError::from)?;
+        let units = self.simulation_units(&case.design).unwrap_or(in_si(&case.design));
+        let main_mass = self.primary.unwrap_or_default().with(varied, &units)?.main_mass()?;
         let primary = main_mass.primary(&units);
         let [displacement, speed] = main_mass.start(&units);
         let start = [x, velocity, displacement, speed];
@@ -171,18 +191,52 @@ fn in_si(design: &Design) -> Units {
 }
 
 impl PrimarySection {
-    /// The main mass that it describes; a `sweep` gives the frequency of the force.
+    /// This section with other values of some of its keys.
+    ///
+    /// # Errors
+    /// The mass in two forms, or a ratio of masses that is not positive.
+    fn with(mut self, varied: &[(PrimaryParameter, f64)], units: &Units) -> Result<Self, PrimaryFileError> {
+        for (parameter, value) in varied {
+            let key = match parameter {
+                PrimaryParameter::Mass | PrimaryParameter::MassRatio => &mut self.mass,
+                PrimaryParameter::Stiffness => &mut self.stiffness,
+                PrimaryParameter::Damping => &mut self.damping,
+                PrimaryParameter::Displacement => &mut self.displacement,
+                PrimaryParameter::Speed => &mut self.speed,
+                PrimaryParameter::Force => &mut self.force,
+                PrimaryParameter::Frequency => &mut self.frequency,
+                PrimaryParameter::Pendulum(_) => continue,
+            };
+            *key = Some(*value);
+            if *parameter == PrimaryParameter::MassRatio {
+                let other = |(other, _): &(PrimaryParameter, f64)| *other == PrimaryParameter::Mass;
+                if varied.iter().any(other) {
+                    return Err(PrimaryFileError::MassTwice);
+                }
+                if *value <= 0.0 {
+                    return Err(PrimaryFileError::Number {
+                        key: "mass_ratio",
+                        wanted: "a positive number",
+                        value: *value,
+                    });
+                }
+                *key = Some(value * units.mass);
+            }
+        }
+        Ok(self)
+    }
+
+    /// The main mass that it describes.
     ///
     /// # Errors
     /// A key that is missing, alone, or no such number.
-    pub(super) fn main_mass(&self, swept: bool) -> Result<MainMass, PrimaryFileError> {
+    pub(super) fn main_mass(&self) -> Result<MainMass, PrimaryFileError> {
         let mass = self.mass.ok_or(PrimaryFileError::Missing("mass"))?;
         let stiffness = self.stiffness.ok_or(PrimaryFileError::Missing("stiffness"))?;
         let alone = |key, other| Err(PrimaryFileError::Alone { key, other });
         match (self.force, self.frequency) {
-            (Some(_), None) if !swept => return alone("force", "frequency"),
+            (Some(_), None) => return alone("force", "frequency"),
             (None, Some(_)) => return alone("frequency", "force"),
-            (None, None) if swept => return alone("frequency", "force"),
             _ => {}
         }
         let least = [

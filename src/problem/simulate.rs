@@ -257,8 +257,9 @@ impl Problem {
             Length, Mass, Modulus, Mu, MuOverGamma, Radius, Restitution, Torque, Viscous,
         };
         let zero = |key: Parameter, given: Option<f64>| !swept.contains(&key) && given.unwrap_or(0.0) == 0.0;
-        // c = 2*zeta*m*omega, torque = alpha*m*g*L
-        let swing_in_si = !zero(Viscous, self.damping.viscous) || !zero(Torque, self.damping.torque);
+        // c = 2*zeta*m*omega, torque = alpha*m*g*L; a main mass is measured in those of the pendulum.
+        let swing_in_si =
+            !zero(Viscous, self.damping.viscous) || !zero(Torque, self.damping.torque) || self.primary.is_some();
         // c = mu*m*sqrt(g)/L^2
         let in_si = swing_in_si || !zero(Coefficient, self.contact.damping);
         let of_contact = |key: &Parameter| match key {

@@ -33,7 +33,7 @@ pub use impact_comparison::impact_comparison;
 pub use materials::{material_sentences, materials};
 pub use mechanism::mechanism;
 pub use optimization::{optimization, optimization_sentences};
-pub use primary::{PrimaryReport, primary, primary_sweep};
+pub use primary::{PrimaryReport, PrimarySweepReport, primary, primary_sweep};
 #[cfg(feature = "json")]
 pub(crate) use response::motion_frequency;
 pub use response::{bifurcation_in_words, response};

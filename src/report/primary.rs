@@ -3,7 +3,8 @@
 use super::{Block, Document, Heading};
 use crate::decimal::{decimal, significant};
 use crate::impact::Units;
-use crate::impact::primary::{Alone, PrimaryMotion, PrimaryRow};
+use crate::impact::primary::{Alone, PrimaryMotion, PrimaryParameter, PrimaryRow};
+use crate::impact::sweep::{Axis, grid_values};
 use crate::symbol::Symbol;
 
 /// The most impacts that are listed.
@@ -28,7 +29,7 @@ pub struct PrimaryReport<'a> {
 /// use lindstedt::report::PrimaryReport;
 ///
 /// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\ndisplacement = 0.02\n[run]\nduration = 20".parse()?;
-/// let asked = file.primary_case(false)?;
+/// let asked = file.primary_case(&[])?;
 /// let motion = simulate_primary(asked.case, &asked.settings)?;
 /// let report = PrimaryReport { motion: &motion, units: &asked.units, samples: &[] };
 /// let text = lindstedt::export::text::document(&lindstedt::report::primary(&report), 120);
@@ -117,6 +118,14 @@ fn impacts<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
         _ if count > MOST_IMPACTS => format!("{count} impacts, the first {MOST_IMPACTS} of them"),
         _ => format!("{count} impacts"),
     })];
+    let [x, ..] = report.motion.case.start;
+    if let Some((side, depth)) = report.motion.case.model.depth(x) {
+        blocks.push(Block::Note(format!(
+            "the motion starts inside the {} barrier, {} deep: the first impact has no touch",
+            side.name(),
+            decimal(depth)
+        )));
+    }
     let or_none = |value: Option<f64>| value.map_or_else(String::new, decimal);
     let row = |impact: &crate::impact::primary::PrimaryImpact| {
         vec![
@@ -247,39 +256,87 @@ fn samples<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
     }]
 }
 
-/// The document of a sweep over the frequency of the force.
+/// A sweep of a main mass to be reported.
+#[derive(Clone, Copy, Debug)]
+pub struct PrimarySweepReport<'a> {
+    /// The values that are swept; the last axis varies fastest.
+    pub axes: &'a [Axis],
+    /// The parameters that they are values of, in the same order.
+    pub parameters: &'a [PrimaryParameter],
+    /// A row for each motion.
+    pub rows: &'a [PrimaryRow],
+    /// The units of each motion, which depend on the pendulum.
+    pub units: &'a [Units],
+}
+
+impl PrimarySweepReport<'_> {
+    /// The values of the parameters of a row.
+    pub fn values(&self, row: usize) -> Vec<f64> {
+        grid_values(self.axes, row)
+    }
+
+    /// Whether a force drives any of the motions: then their amplitudes in the long run are asked for, otherwise their rest times.
+    pub fn is_driven(&self) -> bool {
+        self.rows.iter().any(PrimaryRow::is_driven)
+    }
+}
+
+/// The document of a sweep.
 ///
 /// ```
 /// use lindstedt::impact::primary::sweep_primary;
+/// use lindstedt::impact::sweep::Axis;
 /// use lindstedt::problem::Problem;
+/// use lindstedt::report::PrimarySweepReport;
 ///
 /// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\nforce = 0.01\ndamping = 0.5\n[run]\nduration = 20".parse()?;
-/// let asked = file.primary_case(true)?;
-/// let rows = sweep_primary(asked.case, &[0.8, 1.0], &asked.settings, |_| ())?;
-/// let text = lindstedt::export::text::document(&lindstedt::report::primary_sweep(&rows, &asked.units), 120);
+/// let (axis, parameter): (Axis, _) = ("frequency=9:11:2".parse()?, "frequency".parse()?);
+/// let asked: Result<Vec<_>, _> = axis.values().iter().map(|value| file.primary_case(&[(parameter, *value)])).collect();
+/// let (motions, units): (Vec<_>, Vec<_>) = asked?.into_iter().map(|asked| ((asked.case, asked.settings), asked.units)).unzip();
+/// let rows = sweep_primary(&motions, |_| ()).map_err(|(_, error)| error)?;
+/// let report = PrimarySweepReport { axes: &[axis], parameters: &[parameter], rows: &rows, units: &units };
+/// let text = lindstedt::export::text::document(&lindstedt::report::primary_sweep(&report), 120);
 /// assert_eq!(text.lines().filter(|line| line.contains('.')).count(), 2);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn primary_sweep<'a>(rows: &[PrimaryRow], units: &Units) -> Document<'a> {
-    let row = |row: &PrimaryRow| {
-        let or_none = |value: Option<f64>| value.map_or_else(String::new, |value| decimal(value * units.length));
-        vec![
-            decimal(row.frequency / units.time()),
-            decimal(row.amplitude * units.length),
-            or_none(row.others.locked.amplitude),
-            or_none(row.others.without.amplitude),
-            row.impacts.to_string(),
-        ]
+pub fn primary_sweep<'a>(report: &PrimarySweepReport) -> Document<'a> {
+    let driven = report.is_driven();
+    let or_none = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), decimal);
+    let row = |(number, (row, units)): (usize, (&PrimaryRow, &Units))| {
+        let (length, time, begun) = (units.length, units.time(), row.is_begun());
+        let others = [row.others.locked, row.others.without];
+        let results = match driven {
+            true => [begun.then_some(row.amplitude), others[0].amplitude, others[1].amplitude]
+                .map(|value| value.map(|value| value * length)),
+            false => [row.rest_time.ok(), others[0].rest_time, others[1].rest_time]
+                .map(|value| value.map(|value| value * time)),
+        };
+        let impacts = if driven { row.impacts } else { row.all_impacts };
+        let mut cells: Vec<String> = report.values(number).into_iter().map(decimal).collect();
+        cells.extend(results.map(or_none));
+        cells.push(match begun {
+            true => impacts.to_string(),
+            false => "-".to_owned(),
+        });
+        cells
     };
-    Document {
-        sections: vec![vec![
-            Block::Heading(
-                "Amplitude of the main mass in the long run, m; impacts in the last quarter of the run".to_owned(),
-            ),
-            Block::Table {
-                head: headings(["rad/s", "with its damper", "damper locked", "without", "impacts"]),
-                rows: rows.iter().map(row).collect(),
-            },
-        ]],
-    }
+    let names = report.parameters.iter().map(|parameter| parameter.name());
+    let results = ["with its damper", "damper locked", "without", "impacts"];
+    let head = names.chain(results).map(|text| Heading { text, latex: text });
+    let meanings = report.parameters.iter().map(|parameter| {
+        let unit = parameter.unit();
+        let comma = if unit.is_empty() { "" } else { ", " };
+        Block::Note(format!("{}: {}{comma}{unit}", parameter.name(), parameter.meaning()))
+    });
+    let heading = match driven {
+        true => "Amplitude of the main mass in the long run, m; impacts in the last quarter of the run",
+        false => "When the main mass has come to rest, s: its envelope is down to 10 %; impacts in the whole run",
+    };
+    let mut blocks = vec![Block::Heading(heading.to_owned())];
+    blocks.extend(meanings);
+    blocks.push(Block::Table {
+        head: head.collect(),
+        rows: report.rows.iter().zip(report.units).enumerate().map(row).collect(),
+    });
+    Document { sections: vec![blocks] }
 }

@@ -298,7 +298,12 @@ impl Scaled<'_> {
                 false => Action::Record,
             };
             let height = move |point: &Point<Vec<f64>>| self.value_of(point.t, &point.y, function);
-            watched.push(ode::Event::new(height, action));
+            let crossing = ode::Event::new(height, action);
+            watched.push(match event.rising {
+                None => crossing,
+                Some(true) => crossing.rising(),
+                Some(false) => crossing.falling(),
+            });
         }
         for (corner, argument) in self.smooth.corners.iter().enumerate() {
             let side = self.states + corner;

@@ -265,6 +265,7 @@ impl Run<'_> {
             occurrences: self.occurrences.len(),
         };
         let mut met = self.expansion.crossings(&mut self.signs, length);
+        met.retain(|(event, _, rising)| self.events[*event].counts(*rising));
         let stop = met.iter().position(|found| self.events[found.0].stops);
         let stop = stop.map(|index| {
             met.truncate(index + 1);

@@ -349,6 +349,29 @@ fn dry_friction_stops_the_motion_where_it_holds() {
     }
 }
 
+/// An event that counts in one direction is met in that direction alone, also where it starts at its zero and where rounding makes it leave
+/// it on the wrong side first.
+#[test]
+fn an_event_may_count_in_one_direction() {
+    let wave = system(&["x", "v"], &["v", "-x"], &[]).unwrap();
+    for (event, end) in [
+        (Event::stop(expression("x")).rising(), 1.5 * PI),
+        (Event::stop(expression("x")).falling(), 0.5 * PI),
+        (Event::stop(expression("v")).falling(), 2.0 * PI),
+        (Event::stop(expression("v")).rising(), PI),
+    ] {
+        for path in by_both(&wave, &[1.0, 0.0], 10.0, std::slice::from_ref(&event)) {
+            assert!((path.end() - end).abs() < 1e-11, "{event:?}: {}", path.end());
+        }
+    }
+    // x = t^2/2 - 1e-17 t: it dips below zero for 2e-17.
+    let onset = system(&["x"], &["t - e"], &[("e", 1e-17)]).unwrap();
+    let path = onset
+        .solve(0.0, &[0.0], 1.0, &[Event::stop(expression("x")).falling()], &Options::default())
+        .expect("a path");
+    assert_eq!(path.reason(), End::Reached);
+}
+
 #[test]
 fn what_cannot_be_followed_is_said() {
     assert_eq!(

@@ -699,6 +699,45 @@ fn a_sweep_of_many_parameters_names_every_column_and_its_unit() {
     assert_eq!(words[..4], ["gamma", "frequency_ratio", "beta", "impacts"]);
 }
 
+/// A main mass is swept over its own numbers and those of the pendulum, one or several at a time; what there is to vary is listed.
+#[test]
+fn a_main_mass_is_swept_over_any_of_its_numbers() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/primary/stick-slip.toml");
+    let axes = [file, "--sweep", "barrier=0.1:0.2:2", "--sweep", "displacement=0.01,0.02"];
+    let document = json(&axes);
+    let swept = document["rows"].as_array().expect("rows");
+    let values: Vec<&Value> = swept.iter().map(|row| &row["values"]).collect();
+    assert_eq!(
+        json!(values),
+        json!([[0.1, 0.01], [0.1, 0.02], [0.2, 0.01], [0.2, 0.02]])
+    );
+    // The last of them is the file itself.
+    let alone = json(&[file]);
+    assert_eq!(swept[3]["rest_time"], alone["rest_time"]);
+    assert_eq!(swept[3]["rest_locked"], alone["locked"]["rest_time"]);
+    assert_eq!(swept[3]["all_impacts"], json!(alone["impacts"].as_array().expect("impacts").len()));
+    let table = output(&[&axes[..], &["--format", "csv"]].concat());
+    assert!(table.starts_with("# units: barrier rad, displacement m, "), "{table}");
+    assert_eq!(table.lines().count(), 6);
+    let text = output(&axes);
+    assert!(text.contains("come to rest") && text.contains("barrier: the place"), "{text}");
+    for (sweep, said) in [
+        ("gap=1:2:2", "choose one of primary.mass, mass_ratio, stiffness, "),
+        ("damping=1:2:2", "write primary.damping or contact.damping"),
+        ("frequncy=1:2:2", "did you mean `frequency`?"),
+        ("duration=1:2:2", "give it in [run]"),
+        ("frequency=1:2:2", "[primary] force"),
+        ("stiffness=-1:2:2", "[primary] stiffness must be a positive number"),
+    ] {
+        let output = run(&[file, "--sweep", sweep]);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.stdout.is_empty() && message.contains(said), "{sweep}: {message}");
+    }
+    let output = run(&["x'' + k*x = 0", "--from", "x=1", "--sweep", "j=1:2:2"]);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(message.contains("choose one of k, x, x'"), "{message}");
+}
+
 #[test]
 fn exit_codes_follow_the_verdict() {
     let file = example("paper");

@@ -4,9 +4,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
+use super::sweep::Axis;
 use crate::impact::Units;
-use crate::impact::primary::{Alone, PrimaryImpact, PrimaryRow};
-use crate::report::PrimaryReport;
+use crate::impact::primary::{Alone, Others, PrimaryImpact, PrimaryRow, PrimaryStop};
+use crate::report::{PrimaryReport, PrimarySweepReport};
 
 /// A main mass on spring and dashpot with a pendulum and its barriers. Time is in units of 1/omega, omega^2 = g/L, displacements of the
 /// main mass are over L, energies in units of m g L, angles in radians.
@@ -98,11 +99,11 @@ pub struct PrimarySample {
 pub struct PrimaryImpactDocument {
     /// The barrier: `left` or `right`.
     pub side: String,
-    /// When it is touched.
+    /// When it is touched; 0 where the motion starts inside it.
     pub entry_time: f64,
     /// When it is left; null where the run ends before.
     pub exit_time: Option<f64>,
-    /// The speed of the pendulum towards the barrier at the touch.
+    /// The speed of the pendulum towards the barrier at the touch; where the motion starts inside it, the speed inwards then.
     pub speed_in: f64,
     /// Its speed away from it at the release; null where the run ends before.
     pub speed_out: Option<f64>,
@@ -148,35 +149,51 @@ pub struct AloneDocument {
     pub amplitude: Option<f64>,
 }
 
-/// The main mass at many frequencies of its force. Units as in kind `primary`.
+/// Many runs of a main mass with its pendulum, over every combination of the values of some parameters. Units as in kind `primary`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct PrimarySweepDocument {
     /// The kind of document.
     #[schemars(extend("const" = Kind::PrimarySweep.schema()))]
     pub schema: String,
-    /// One unit of time, in seconds.
-    pub time_unit: f64,
-    /// One unit of displacement of the main mass, L, in metres.
-    pub length_unit: f64,
-    /// A row for every frequency.
+    /// The parameters that are varied, in SI units unless they are numbers of equation (7); the last varies fastest.
+    pub axes: Vec<Axis>,
+    /// One unit of time, in seconds; null where the runs differ in it.
+    pub time_unit: Option<f64>,
+    /// One unit of displacement of the main mass, L, in metres; null where the runs differ in it.
+    pub length_unit: Option<f64>,
+    /// A row for every run.
     pub rows: Vec<PrimarySweepRow>,
 }
 
-/// The main mass at one frequency.
+/// One run of a main mass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct PrimarySweepRow {
+    /// The values of the parameters, in the order of the axes.
+    pub values: Vec<f64>,
     /// eta, the frequency of the force over omega.
     pub frequency: f64,
-    /// The largest displacement in the last quarter of the run, with its damper.
-    pub amplitude: f64,
-    /// The amplitude in the long run with the damper locked; null at an undamped resonance.
+    /// The largest displacement in the last quarter of the run, with its damper; null for a run that was stopped before it began.
+    pub amplitude: Option<f64>,
+    /// The amplitude in the long run with the damper locked; null at an undamped resonance, and where no force drives it.
     pub locked: Option<f64>,
     /// The same without the damper.
     pub without: Option<f64>,
-    /// The number of impacts in the last quarter of the run.
-    pub impacts: usize,
+    /// The number of impacts in the last quarter of the run; null for a run that was stopped before it began.
+    pub impacts: Option<usize>,
+    /// The number of impacts in the whole run; null likewise.
+    pub all_impacts: Option<usize>,
+    /// When the envelope of the main mass has fallen to a tenth, for good; null where it never does, and where a force drives it.
+    pub rest_time: Option<f64>,
+    /// The rest time with the damper locked; null where it never rests, creeps, or a force drives it.
+    pub rest_locked: Option<f64>,
+    /// The same without the damper.
+    pub rest_without: Option<f64>,
+    /// One unit of time in this run, in seconds.
+    pub time_unit: f64,
+    /// One unit of displacement of the main mass in this run, L, in metres.
+    pub length_unit: f64,
     /// Whether the run was followed as long as asked.
     pub complete: bool,
 }
@@ -189,7 +206,7 @@ pub struct PrimarySweepRow {
 /// use lindstedt::report::PrimaryReport;
 ///
 /// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\ndisplacement = 0.02\n[run]\nduration = 20".parse()?;
-/// let asked = file.primary_case(false)?;
+/// let asked = file.primary_case(&[])?;
 /// let motion = simulate_primary(asked.case, &asked.settings)?;
 /// let document = lindstedt::export::json::primary(&PrimaryReport { motion: &motion, units: &asked.units, samples: &[] });
 /// assert!(document.complete && document.energy.residual < 1e-9);
@@ -290,27 +307,49 @@ fn alone(alone: &Alone) -> AloneDocument {
 ///
 /// ```
 /// use lindstedt::impact::primary::sweep_primary;
+/// use lindstedt::impact::sweep::Axis;
 /// use lindstedt::problem::Problem;
+/// use lindstedt::report::PrimarySweepReport;
 ///
 /// let file: Problem = "[primary]\nmass = 0.56\nstiffness = 80\nforce = 0.01\ndamping = 0.5\n[run]\nduration = 20".parse()?;
-/// let asked = file.primary_case(true)?;
-/// let rows = sweep_primary(asked.case, &[0.8, 1.0], &asked.settings, |_| ())?;
-/// assert_eq!(lindstedt::export::json::primary_sweep(&rows, &asked.units).rows.len(), 2);
+/// let (axis, parameter): (Axis, _) = ("frequency=9:11:2".parse()?, "frequency".parse()?);
+/// let asked: Result<Vec<_>, _> = axis.values().iter().map(|value| file.primary_case(&[(parameter, *value)])).collect();
+/// let (motions, units): (Vec<_>, Vec<_>) = asked?.into_iter().map(|asked| ((asked.case, asked.settings), asked.units)).unzip();
+/// let rows = sweep_primary(&motions, |_| ()).map_err(|(_, error)| error)?;
+/// let report = PrimarySweepReport { axes: &[axis], parameters: &[parameter], rows: &rows, units: &units };
+/// assert_eq!(lindstedt::export::json::primary_sweep(&report).rows[1].values, [11.0]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn primary_sweep(rows: &[PrimaryRow], units: &Units) -> PrimarySweepDocument {
-    let row = |row: &PrimaryRow| PrimarySweepRow {
-        frequency: row.frequency,
-        amplitude: row.amplitude,
-        locked: row.others.locked.amplitude,
-        without: row.others.without.amplitude,
-        impacts: row.impacts,
-        complete: row.stop == crate::impact::primary::PrimaryStop::Duration,
+pub fn primary_sweep(report: &PrimarySweepReport) -> PrimarySweepDocument {
+    let row = |(number, (row, units)): (usize, (&PrimaryRow, &Units))| {
+        let Others { locked, without } = row.others;
+        let begun = row.is_begun();
+        PrimarySweepRow {
+            values: report.values(number),
+            frequency: row.primary.frequency,
+            amplitude: begun.then_some(row.amplitude),
+            locked: locked.amplitude,
+            without: without.amplitude,
+            impacts: begun.then_some(row.impacts),
+            all_impacts: begun.then_some(row.all_impacts),
+            rest_time: row.rest_time.ok().filter(|_| !row.is_driven()),
+            rest_locked: locked.rest_time,
+            rest_without: without.rest_time,
+            time_unit: units.time(),
+            length_unit: units.length,
+            complete: row.stop == PrimaryStop::Duration,
+        }
+    };
+    let rows: Vec<PrimarySweepRow> = report.rows.iter().zip(report.units).enumerate().map(row).collect();
+    let common = |unit: fn(&PrimarySweepRow) -> f64| {
+        let first = rows.first().map(unit)?;
+        rows.iter().all(|row| unit(row) == first).then_some(first)
     };
     PrimarySweepDocument {
         schema: Kind::PrimarySweep.schema().to_owned(),
-        time_unit: units.time(),
-        length_unit: units.length,
-        rows: rows.iter().map(row).collect(),
+        axes: report.axes.iter().map(Axis::from).collect(),
+        time_unit: common(|row| row.time_unit),
+        length_unit: common(|row| row.length_unit),
+        rows,
     }
 }

@@ -45,6 +45,20 @@ pub struct Axis {
     pub values: Vec<f64>,
 }
 
+impl From<&crate::impact::sweep::Axis> for Axis {
+    fn from(axis: &crate::impact::sweep::Axis) -> Self {
+        let [from, to] = axis.ends();
+        Self {
+            name: axis.name().to_owned(),
+            from,
+            to,
+            count: axis.values().len(),
+            spacing: axis.spacing().name().to_owned(),
+            values: axis.values().to_vec(),
+        }
+    }
+}
+
 /// What one number, text or truth value of a row means.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
@@ -64,22 +78,22 @@ pub struct Column {
 pub struct Row {
     /// The values of the parameters, in the order of the axes.
     pub values: Vec<f64>,
-    /// The number of contacts.
-    pub impacts: usize,
+    /// The number of contacts; null for a run that was stopped before it began.
+    pub impacts: Option<usize>,
     /// When the envelope of the amplitude falls to a tenth of the first swing, in units of time; null where it does not.
     pub rest_time: Option<f64>,
     /// The same without a barrier; null where it does not rest, and where the baseline was not asked for.
     pub rest_no_barrier: Option<f64>,
     /// The same with a barrier that loses nothing; null likewise.
     pub rest_lossless: Option<f64>,
-    /// The greatest depth in a barrier, in radians; 0 without contact.
-    pub penetration: f64,
-    /// The greatest speed at a touch, in radians per unit of time; 0 without contact.
-    pub speed_in: f64,
-    /// The energy lost in contacts, in units of m g L.
-    pub energy_lost: f64,
-    /// The state at the end.
-    pub final_state: State,
+    /// The greatest depth in a barrier, in radians; 0 without contact, null for a run that was stopped before it began.
+    pub penetration: Option<f64>,
+    /// The greatest speed at a touch, in radians per unit of time; 0 without contact, null likewise.
+    pub speed_in: Option<f64>,
+    /// The energy lost in contacts, in units of m g L; null likewise.
+    pub energy_lost: Option<f64>,
+    /// The state at the end; null likewise.
+    pub final_state: Option<State>,
     /// Whether the run got where it was to get.
     pub complete: bool,
     /// Why the run ended, in words.
@@ -117,17 +131,6 @@ impl Serialize for Streamed<'_> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
-    let axes = report.axes.iter().map(|axis| {
-        let [from, to] = axis.ends();
-        Axis {
-            name: axis.name().to_owned(),
-            from,
-            to,
-            count: axis.values().len(),
-            spacing: axis.spacing().name().to_owned(),
-            values: axis.values().to_vec(),
-        }
-    });
     let columns = columns(report.axes, report.has_baseline())
         .into_iter()
         .map(|column| Column {
@@ -137,7 +140,7 @@ pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
         });
     let document = SweepDocument {
         schema: Kind::Sweep.schema().to_owned(),
-        axes: axes.collect(),
+        axes: report.axes.iter().map(Axis::from).collect(),
         columns: columns.collect(),
         rows: Streamed(report),
     };
@@ -145,20 +148,21 @@ pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
 }
 
 fn row(values: Vec<f64>, summary: &Summary) -> Row {
+    let begun = summary.is_begun();
     Row {
         values,
-        impacts: summary.impacts,
+        impacts: begun.then_some(summary.impacts),
         rest_time: summary.rest_time.ok(),
         rest_no_barrier: summary.baseline.and_then(|[without, _]| without.ok()),
         rest_lossless: summary.baseline.and_then(|[_, lossless]| lossless.ok()),
-        penetration: summary.deepest,
-        speed_in: summary.fastest,
-        energy_lost: summary.energy_lost,
-        final_state: State {
+        penetration: begun.then_some(summary.deepest),
+        speed_in: begun.then_some(summary.fastest),
+        energy_lost: begun.then_some(summary.energy_lost),
+        final_state: begun.then_some(State {
             t: summary.end_time,
             x: summary.end_x,
             velocity: summary.end_velocity,
-        },
+        }),
         complete: summary.stop.is_complete(),
         stopped: summary.stop.to_string(),
     }

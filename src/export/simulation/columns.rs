@@ -16,7 +16,11 @@ pub struct Column {
 
 /// Name, unit and meaning of what came of each motion.
 const RESULTS: [(&str, Option<&str>, &str); 10] = [
-    ("impacts", Some("1"), "the number of contacts"),
+    (
+        "impacts",
+        Some("1"),
+        "the number of contacts; empty or null for a run that was stopped before it began, as is all that follows",
+    ),
     (
         "rest_time",
         Some("1/omega"),

@@ -91,19 +91,21 @@ pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
         if let Some([without, lossless]) = summary.baseline {
             rest = format!("{rest},{},{}", written(without), written(lossless));
         }
-        writeln!(
-            to,
-            "{},{rest},{},{},{},{},{},{},{},{}",
-            summary.impacts,
-            summary.deepest,
-            summary.fastest,
-            summary.energy_lost,
-            summary.end_time,
-            summary.end_x,
-            summary.end_velocity,
-            summary.stop.is_complete(),
-            summary.stop.name()
-        )?;
+        let (complete, stop) = (summary.stop.is_complete(), summary.stop.name());
+        match summary.is_begun() {
+            true => writeln!(
+                to,
+                "{},{rest},{},{},{},{},{},{},{complete},{stop}",
+                summary.impacts,
+                summary.deepest,
+                summary.fastest,
+                summary.energy_lost,
+                summary.end_time,
+                summary.end_x,
+                summary.end_velocity,
+            )?,
+            false => writeln!(to, ",{rest},,,,,,,{complete},{stop}")?,
+        }
     }
     Ok(())
 }

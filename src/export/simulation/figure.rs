@@ -219,19 +219,19 @@ const QUANTITIES: [Quantity; 4] = [
         title: "Impacts",
         label: "number of impacts",
         name: "impacts",
-        value: |summary| Some(summary.impacts as f64),
+        value: |summary| summary.is_begun().then_some(summary.impacts as f64),
     },
     Quantity {
         title: "Deepest penetration",
         label: "penetration (rad)",
         name: "penetration",
-        value: |summary| Some(summary.deepest),
+        value: |summary| summary.is_begun().then_some(summary.deepest),
     },
     Quantity {
         title: "Energy lost in contact",
         label: "energy (units of m g L)",
         name: "energy",
-        value: |summary| Some(summary.energy_lost),
+        value: |summary| summary.is_begun().then_some(summary.energy_lost),
     },
 ];
 

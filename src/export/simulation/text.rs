@@ -469,14 +469,18 @@ pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
         } else {
             summary.energy_lost
         };
+        let results = match summary.is_begun() {
+            true => [summary.deepest, summary.fastest, lost, summary.end_time].map(decimal),
+            false => [(); 4].map(|()| "-".to_owned()),
+        };
+        let impacts = match summary.is_begun() {
+            true => summary.impacts.to_string(),
+            false => "-".to_owned(),
+        };
+        let [deepest, fastest, lost, end] = results;
         writeln!(
             to,
-            "{:>9}{rest:>13}{beside}{:>13}{:>11}{:>13}{:>13}{warning}",
-            summary.impacts,
-            decimal(summary.deepest),
-            decimal(summary.fastest),
-            decimal(lost),
-            decimal(summary.end_time)
+            "{impacts:>9}{rest:>13}{beside}{deepest:>13}{fastest:>11}{lost:>13}{end:>13}{warning}"
         )?;
     }
     Ok(())

@@ -3,12 +3,21 @@
 //! A flight ends at a touch, or where friction changes its direction; a contact ends where w is zero again, or where the barrier
 //! would have to pull and lets go; what is held ends where the torque on it is more than friction can bear. Every phase begins with the
 //! states that the last one left, exactly.
+//!
+//! At the onset of a slip x' and x'' are both zero, so that rounding decides in which direction x' leaves its zero. Therefore only
+//! crossings in one direction end a phase, and each such event has a second one at a level that rounding does not reach:
+//!
+//! ```text
+//! slip in direction d:   d x' falls through 0                          or through -ROUNDING alpha
+//! held:                  |torque| grows through alpha                  or through (1 + ROUNDING) alpha
+//! ```
 
 use super::super::model::Side;
 use super::super::simulation::REST_FRACTION;
 use super::equations::{ACCOUNTS, Equations, Followed};
 use super::path::{Piece, PrimaryPath, PrimaryState};
 use super::{PrimaryCase, PrimaryEnergy, PrimaryError, PrimaryImpact, PrimaryMotion, PrimarySettings, PrimaryStop};
+use crate::exact::from_f64;
 use crate::expr::{Expr, parse_expression};
 use crate::system::{End, Event, Options, Path};
 
@@ -74,6 +83,9 @@ pub fn simulate_primary(case: PrimaryCase, settings: &PrimarySettings) -> Result
 /// So many phases without length in a row are one too many.
 const IDLE: usize = 8;
 
+/// What rounding leaves of a torque or a speed that is zero, in parts of the friction.
+const ROUNDING: f64 = 1e-12;
+
 /// What the pendulum is doing; the direction is that of dry friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Regime {
@@ -110,11 +122,13 @@ fn own(text: &str) -> Expr {
     parse_expression(text).unwrap_or_else(|_| Expr::zero())
 }
 
+/// A finite number as an expression.
+fn number(value: f64) -> Expr {
+    from_f64(value).map_or_else(Expr::zero, Expr::number)
+}
+
 fn offset(name: &str, place: f64) -> Expr {
-    match crate::exact::rational::from_f64(place) {
-        Some(place) => own(name) - Expr::number(place),
-        None => own(name),
-    }
+    own(name) - number(place)
 }
 
 impl<'a> Run<'a> {
@@ -141,10 +155,20 @@ impl<'a> Run<'a> {
             largest: energy.abs(),
             astray: 0.0,
         };
-        match run.direction(0.0) {
-            Some(direction) => run.set_off(direction)?,
-            None => run.regime = Regime::Held,
+        let inside = case.model.depth(x);
+        let push = inside.map_or(0.0, |(side, depth)| -side.sign() * case.model.contact(depth, 0.0));
+        let direction = run.direction(push);
+        if let Some((side, depth)) = inside {
+            run.begin_impact(side, depth);
         }
+        run.regime = match (direction, inside) {
+            (None, _) => Regime::Held,
+            (Some(direction), None) => return run.set_off(direction).map(|()| run),
+            (Some(direction), Some((side, _))) if case.model.would_pull(side.sign() * velocity) => {
+                Regime::LetGo(side, direction)
+            }
+            (Some(direction), Some((side, _))) => Regime::Contact(side, direction),
+        };
         Ok(run)
     }
 
@@ -171,6 +195,8 @@ impl<'a> Run<'a> {
                 continue;
             }
             let push = match velocity == 0.0 {
+                // From rest it slips in the direction that friction opposes, if only with its third derivative.
+                true if direction != 0.0 => direction,
                 true => self
                     .equations
                     .acceleration(self.t, [x, velocity, y, speed], direction)?,
@@ -218,11 +244,12 @@ impl<'a> Run<'a> {
                 events.push(Event::stop(offset("x", place)));
             }
         }
-        events.push(match self.case.sticks() {
-            true => Event::stop(own("x'")),
-            false => Event::record(own("x'")),
-        });
-        let reason = self.glide(direction, &events, Some(events.len() - 1))?;
+        let turning = events.len();
+        match self.case.sticks() {
+            true => events.extend(self.end_of_slip(direction)),
+            false => events.push(Event::record(own("x'"))),
+        }
+        let reason = self.glide(direction, &events, Some(turning))?;
         if let End::Event(event) = reason {
             match sides.get(event.wrapping_sub(1)) {
                 Some(side) => self.enter(*side, direction),
@@ -230,6 +257,13 @@ impl<'a> Run<'a> {
             }
         }
         Ok(reason)
+    }
+
+    /// The events that end a slip in this direction: it comes to rest, or turns out to be none.
+    fn end_of_slip(&self, direction: f64) -> [Event; 2] {
+        let forward = Expr::from(direction as i64) * own("x'");
+        let unseen = number(ROUNDING * self.case.model.alpha);
+        [&forward + &Expr::zero(), forward + unseen].map(|speed| Event::stop(speed).falling())
     }
 
     /// Away from every force of a barrier until one of these events; the first of them are the turning points of the main mass, those of
@@ -273,6 +307,12 @@ impl<'a> Run<'a> {
 
     fn enter(&mut self, side: Side, direction: f64) {
         self.state.x = self.place(side);
+        self.begin_impact(side, 0.0);
+        self.regime = Regime::Contact(side, direction);
+    }
+
+    /// An impact that begins now, this deep in the barrier.
+    fn begin_impact(&mut self, side: Side, depth: f64) {
         self.taken = self.accounts[2];
         self.impacts.push(PrimaryImpact {
             side,
@@ -280,10 +320,9 @@ impl<'a> Run<'a> {
             exit: None,
             speed_in: side.sign() * self.state.velocity,
             speed_out: None,
-            penetration: 0.0,
+            penetration: depth,
             energy_lost: 0.0,
         });
-        self.regime = Regime::Contact(side, direction);
     }
 
     fn leave(&mut self, side: Side, direction: f64) {
@@ -308,14 +347,14 @@ impl<'a> Run<'a> {
             Event::stop(own("w")),
             Event::stop(offset("t", self.settings.duration)),
         ];
-        events.push(match self.case.sticks() {
-            true => Event::stop(own("x'")),
-            false => Event::record(own("x'")),
-        });
-        let pulls = self.case.model.mu > 0.0;
-        if pulls {
+        match self.case.sticks() {
+            true => events.extend(self.end_of_slip(direction)),
+            false => events.push(Event::record(own("x'"))),
+        }
+        let pulls = events.len();
+        if self.case.model.mu > 0.0 {
             let sign = Expr::from(side.sign() as i64);
-            events.push(Event::stop(own("gamma") + sign * own("mu*x'")));
+            events.push(Event::stop(own("gamma") + sign * own("mu*x'")).falling());
         }
         let PrimaryState { velocity, y, speed, .. } = self.state;
         let start = self.with_accounts(&[w, velocity, y, speed, self.t], &followed);
@@ -347,14 +386,14 @@ impl<'a> Run<'a> {
         match reason {
             End::Event(1) => self.leave(side, direction),
             End::Event(2) => self.t = self.settings.duration,
-            End::Event(3) => {
+            End::Event(event) if event == pulls => self.regime = Regime::LetGo(side, direction),
+            End::Event(_) => {
                 let push = -side.sign() * self.case.model.contact(w * w, 0.0);
                 self.turn_back(push)?;
                 if let Regime::Free(direction) = self.regime {
                     self.regime = Regime::Contact(side, direction);
                 }
             }
-            End::Event(4) => self.regime = Regime::LetGo(side, direction),
             _ => {}
         }
         Ok(reason)
@@ -368,7 +407,7 @@ impl<'a> Run<'a> {
         let events = [
             Event::record(own("y'")),
             Event::stop(offset("x", place)),
-            Event::stop(own("gamma") + sign * own("mu*x'")),
+            Event::stop(own("gamma") + sign * own("mu*x'")).rising(),
         ];
         let before = self.state.x;
         let reason = self.glide(direction, &events, None)?;
@@ -391,12 +430,12 @@ impl<'a> Run<'a> {
         let inside = self.case.model.depth(x);
         let contact = inside.map_or(0.0, |(side, depth)| -side.sign() * self.case.model.contact(depth, 0.0));
         let (followed, torque) = self.equations.held(x, contact)?;
-        let alpha = own("alpha");
-        let events = [
-            Event::record(own("y'")),
-            Event::stop(&torque - &alpha),
-            Event::stop(&torque + &alpha),
-        ];
+        let bound = self.case.model.alpha;
+        let mut events = vec![Event::record(own("y'"))];
+        for bound in [bound, (1.0 + ROUNDING) * bound].map(number) {
+            events.push(Event::stop(&torque - &bound).rising());
+            events.push(Event::stop(&torque + &bound).falling());
+        }
         let start = self.with_accounts(&[y, speed], &followed);
         let path = followed
             .system
@@ -414,7 +453,7 @@ impl<'a> Run<'a> {
         self.path.push(self.t, end, Piece::Held { path, x });
         self.t = end;
         if let End::Event(event) = reason {
-            let direction = if event == 1 { 1.0 } else { -1.0 };
+            let direction = if event % 2 == 1 { 1.0 } else { -1.0 };
             match inside {
                 Some((side, _)) => self.regime = Regime::Contact(side, direction),
                 None => self.set_off(direction)?,

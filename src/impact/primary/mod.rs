@@ -20,6 +20,7 @@
 mod equations;
 mod follow;
 mod linear;
+mod parameter;
 mod path;
 mod pendulum;
 mod si;
@@ -34,6 +35,7 @@ use crate::system::SystemError;
 
 pub use follow::simulate_primary;
 pub use linear::{Alone, Others};
+pub use parameter::{PrimaryParameter, UnknownPrimaryParameter};
 pub use path::PrimaryState;
 pub use si::MainMass;
 pub use sweep::{PrimaryRow, sweep_primary};
@@ -99,11 +101,11 @@ impl Default for PrimarySettings {
 pub struct PrimaryImpact {
     /// Which barrier.
     pub side: Side,
-    /// When it is touched.
+    /// When it is touched; 0 where the motion starts inside it.
     pub entry: f64,
     /// When it is left; nothing where the motion ends in contact.
     pub exit: Option<f64>,
-    /// The speed of the pendulum towards the barrier at the touch.
+    /// The speed of the pendulum towards the barrier at the touch; where the motion starts inside it, the speed inwards then.
     pub speed_in: f64,
     /// Its speed away from it at the release.
     pub speed_out: Option<f64>,
@@ -195,9 +197,6 @@ pub enum PrimaryError {
     /// A pivot that is driven beside the main mass.
     #[error("the pivot moves with the main mass: drive that by a force, and leave out the excitation beta")]
     Driven,
-    /// A start inside a barrier.
-    #[error("the pendulum starts inside of a barrier")]
-    Inside,
     /// The equations.
     #[error(transparent)]
     Mechanics(#[from] MechanicsError),
@@ -231,9 +230,6 @@ impl PrimaryCase {
         self.model.check(super::model::Start { x, velocity })?;
         if self.model.beta != 0.0 {
             return Err(PrimaryError::Driven);
-        }
-        if self.model.depth(x).is_some() {
-            return Err(PrimaryError::Inside);
         }
         Ok(())
     }

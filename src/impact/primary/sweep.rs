@@ -1,68 +1,89 @@
-//! The main mass at many frequencies of its force: how far it swings in the long run, with its damper, with the damper locked and
-//! without.
+//! Many main masses with their pendulums: how far each swings in the long run, or when it comes to rest, with its damper, with the damper
+//! locked and without.
 
 use super::{Others, Primary, PrimaryCase, PrimaryError, PrimarySettings, PrimaryStop, simulate_primary};
+use crate::impact::NoRest;
 use crate::parallel::each;
 
 /// The part of a run, its last, that counts as the long run.
 const LAST: f64 = 0.25;
 
-/// The main mass at one frequency.
+/// What came of one motion of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrimaryRow {
-    /// eta, the frequency of the force over omega.
-    pub frequency: f64,
+    /// The main mass.
+    pub primary: Primary,
+    /// When the run ended; 0 for one that was asked to end before it had begun.
+    pub end: f64,
     /// The largest |y| in the last quarter of the run, over L.
     pub amplitude: f64,
     /// The number of impacts in that quarter.
     pub impacts: usize,
+    /// The number of impacts in the whole run.
+    pub all_impacts: usize,
+    /// When the main mass comes to rest, as [`PrimaryMotion::rest_time`](super::PrimaryMotion::rest_time) says, or why it does not.
+    pub rest_time: Result<f64, NoRest>,
     /// The main mass without its damper and with the damper locked, in closed form.
     pub others: Others,
     /// Why the run ended.
     pub stop: PrimaryStop,
 }
 
-/// A row for every frequency, on all threads of the current pool; `progress` hears of each that is done. The result is the same for
+impl PrimaryRow {
+    /// Whether the run was begun before all were asked to end.
+    pub fn is_begun(&self) -> bool {
+        self.stop != PrimaryStop::Interrupted || self.end > 0.0
+    }
+
+    /// Whether a force drives the main mass, so that it has an amplitude in the long run and no rest.
+    pub fn is_driven(&self) -> bool {
+        self.primary.force != 0.0
+    }
+}
+
+/// A row for every motion, on all threads of the current pool; `progress` hears of each that is done. The result is the same for
 /// any number of threads.
 ///
 /// # Errors
-/// The first frequency that cannot be followed.
+/// The number, counted from zero, of the first motion that cannot be followed, and why.
 ///
 /// ```
 /// use lindstedt::impact::Model;
 /// use lindstedt::impact::primary::{Primary, PrimaryCase, PrimarySettings, sweep_primary};
 ///
-/// let primary = Primary { mass: 20.0, stiffness: 20.0, damping: 0.8, force: 0.1, frequency: 1.0 };
-/// let case = PrimaryCase { primary, model: Model { gamma: 1e4, mu: 1e3, zeta: 0.02, ..Model::default() }, start: [0.0; 4] };
-/// let rows = sweep_primary(case, &[0.5, 2.0], &PrimarySettings { duration: 60.0, ..PrimarySettings::default() }, |_| ())?;
+/// let model = Model { gamma: 1e4, mu: 1e3, zeta: 0.02, ..Model::default() };
+/// let settings = PrimarySettings { duration: 60.0, ..PrimarySettings::default() };
+/// let motions = [0.5, 2.0].map(|frequency| {
+///     let primary = Primary { mass: 20.0, stiffness: 20.0, damping: 0.8, force: 0.1, frequency };
+///     (PrimaryCase { primary, model, start: [0.0; 4] }, settings)
+/// });
+/// let rows = sweep_primary(&motions, |_| ()).map_err(|(_, error)| error)?;
 /// assert!(rows[0].amplitude > rows[1].amplitude);
 /// # Ok::<(), lindstedt::impact::primary::PrimaryError>(())
 /// ```
 pub fn sweep_primary(
-    case: PrimaryCase,
-    frequencies: &[f64],
-    settings: &PrimarySettings,
+    motions: &[(PrimaryCase, PrimarySettings)],
     progress: impl Fn(usize) + Sync,
-) -> Result<Vec<PrimaryRow>, PrimaryError> {
-    let row = |frequency: &f64| {
-        let primary = Primary {
-            frequency: *frequency,
-            ..case.primary
-        };
-        let row = row(PrimaryCase { primary, ..case }, settings);
+) -> Result<Vec<PrimaryRow>, (usize, PrimaryError)> {
+    let numbered: Vec<_> = motions.iter().enumerate().collect();
+    let one = |(number, (case, settings)): &(usize, &(PrimaryCase, PrimarySettings))| {
+        let row = row(*case, settings).map_err(|error| (*number, error));
         progress(1);
         row
     };
-    each(frequencies, row).into_iter().collect()
+    each(&numbered, one).into_iter().collect()
 }
 
 fn row(case: PrimaryCase, settings: &PrimarySettings) -> Result<PrimaryRow, PrimaryError> {
     let motion = simulate_primary(case, settings)?;
     let since = (1.0 - LAST) * motion.end;
     Ok(PrimaryRow {
-        frequency: case.primary.frequency,
+        primary: case.primary,
+        end: motion.end,
         amplitude: motion.largest_since(since),
         impacts: motion.impacts.iter().filter(|impact| impact.entry >= since).count(),
+        all_impacts: motion.impacts.len(),
+        rest_time: motion.rest_time(),
         others: case.primary.others(),
         stop: motion.stop,
     })

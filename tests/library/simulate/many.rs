@@ -61,3 +61,58 @@ fn a_sweep_is_the_same_on_any_number_of_threads() {
     assert_eq!(one, many);
     assert_eq!(counted.into_inner(), motions.len());
 }
+
+/// What was never begun has nothing to show: no impacts, no depth, no end.
+#[test]
+fn a_motion_that_was_never_begun_shows_nothing() {
+    use lindstedt::Interrupt;
+    use lindstedt::export::json;
+    use lindstedt::export::simulation::{SweepReport, sweep_csv, sweep_text};
+    use lindstedt::impact::sweep::Axis;
+    static STOPPED: std::sync::atomic::AtomicBool = std::sync::atomic::AtomicBool::new(true);
+    let axes: [Axis; 1] = ["zeta=0.01:0.02:3".parse().expect("an axis")];
+    let motions: Vec<(Model, Start)> = axes[0]
+        .values()
+        .iter()
+        .map(|zeta| {
+            let model = Model {
+                zeta: *zeta,
+                ..Model::default()
+            };
+            (model, Start::default())
+        })
+        .collect();
+    let settings = Settings {
+        interrupt: Interrupt::by(&STOPPED),
+        ..Settings::default()
+    };
+    let mut rows = sweep_on(1, &motions, Integrator::Taylor, &settings, |_| ()).expect("rows");
+    assert!(rows.iter().all(|row| !row.is_begun()));
+    // One of them was followed to its end.
+    rows[1] = sweep_on(1, &motions[1..2], Integrator::Taylor, &Settings::default(), |_| ()).expect("a row")[0];
+    assert!(rows[1].is_begun());
+    let report = SweepReport {
+        axes: &axes,
+        rows: &rows,
+    };
+    let written = |write: fn(&SweepReport, &mut dyn std::io::Write) -> std::io::Result<()>| {
+        let mut text = Vec::new();
+        write(&report, &mut text).expect("a text");
+        String::from_utf8(text).expect("a text")
+    };
+    let text = written(sweep_text);
+    let words: Vec<&str> = text.lines().nth(1).expect("a line").split_whitespace().collect();
+    assert_eq!(words, ["0.01", "-", "-", "-", "-", "-", "-", "incomplete"]);
+    let table = written(sweep_csv);
+    let cells: Vec<&str> = table.lines().nth(2).expect("a line").split(',').collect();
+    assert_eq!(cells[..9], ["0.01", "", "", "", "", "", "", "", ""]);
+    assert_eq!(cells[9..], ["false", "interrupted"]);
+    assert_eq!(cells.len(), table.lines().nth(3).expect("a line").split(',').count());
+    let document: json::SweepDocument = serde_json::from_str(&written(json::sweep)).expect("a document");
+    let [first, second, _] = document.rows.as_slice() else {
+        panic!("{document:?}");
+    };
+    let none = (first.impacts, first.penetration, first.speed_in, first.energy_lost);
+    assert_eq!((none, &first.final_state), ((None, None, None, None), &None));
+    assert!(second.impacts.is_some() && second.final_state.is_some());
+}

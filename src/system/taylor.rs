@@ -320,6 +320,8 @@ impl Run<'_> {
     fn has_missed_something(&self, last: &Last) -> bool {
         /// Of the size of a state on the step: what its rate there may be off, times the step.
         const ASTRAY: f64 = 1e-8;
+        // The terms that are left out are within the tolerance, their slopes within as many times it as the next order says.
+        let astray = ASTRAY.max((self.expansion.order + 1) as f64 * self.options.tolerance);
         let Some(step) = self.steps.last() else { return false };
         let differs = |(state, series): (usize, &[f64])| {
             let rate = self.expansion.state(state).get(1).copied().unwrap_or(0.0);
@@ -329,7 +331,7 @@ impl Run<'_> {
                 size += (coefficient * power).abs();
                 change += order as f64 * coefficient * power;
             }
-            (change - rate * last.length).abs() > ASTRAY * size
+            (change - rate * last.length).abs() > astray * size
         };
         step.coefficients.chunks(step.order + 1).enumerate().any(differs)
     }
@@ -615,9 +617,9 @@ impl Allowance {
         Self { order, parts }
     }
 
-    /// The lowest of the last orders.
+    /// The lowest of the last orders, above those that tell the size.
     fn first(order: usize) -> usize {
-        order.saturating_sub(LAST - 1).max(1)
+        order.saturating_sub(LAST - 1).max(order / 2 + 1)
     }
 
     /// The longest step, no longer than this, on which the last terms of a series of this order are within the tolerance.
@@ -640,7 +642,7 @@ impl Allowance {
             }
         }
         for _ in 0..TRIALS {
-            if h.is_infinite() || self.is_within(series, powers.of(h)) {
+            if h.is_infinite() || self.is_within(series, lead, powers.of(h)) {
                 break;
             }
             h *= SHORTER;
@@ -648,11 +650,12 @@ impl Allowance {
         h
     }
 
-    /// Whether the last terms of a series, at the place with these powers, are within the tolerance.
-    fn is_within(&self, series: &[f64], powers: &[f64]) -> bool {
+    /// Whether the last terms of a series that begins with the order `lead`, at the place with these powers, are within the tolerance.
+    fn is_within(&self, series: &[f64], lead: usize, powers: &[f64]) -> bool {
         let term = |k: usize| series[k].abs() * powers[k];
-        let size = (0..=self.order / 2).map(term).fold(0.0, f64::max);
-        let mut last = (Self::first(self.order)..=self.order).zip(self.parts);
+        let size = (lead..=lead.max(self.order / 2)).map(term).fold(0.0, f64::max);
+        let last = (Self::first(self.order)..=self.order).zip(self.parts);
+        let mut last = last.filter(|(k, _)| *k > lead);
         last.all(|(k, part)| term(k) <= size * part)
     }
 }

@@ -8,6 +8,7 @@
 pub(crate) mod convolution;
 pub(crate) mod fixed_width;
 pub(crate) mod fourier;
+pub(crate) mod guard;
 pub(crate) mod hermite_pade;
 pub(crate) mod recurrence;
 pub mod singularity;

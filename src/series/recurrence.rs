@@ -16,6 +16,7 @@ use crate::exact::rational::to_f64;
 use crate::expr::{Expr, Function, Node};
 use crate::symbol::Symbol;
 
+use super::guard::Guards;
 use super::tape::{Corner, Operation, Tape};
 
 /// Why an expression has no recurrence.
@@ -44,6 +45,8 @@ pub struct Recurrences {
     outputs: Vec<usize>,
     /// Sine and cosine of a series, or their hyperbolic sisters: who has one has the other.
     waves: HashMap<(usize, bool), [usize; 2]>,
+    /// Those of the corners of the tape, in their order.
+    guards: Guards,
 }
 
 /// The real root of an odd degree: the sign of the base is kept, or lost in an even power.
@@ -72,6 +75,7 @@ impl Recurrences {
             slopes: HashMap::new(),
             outputs: vec![],
             waves: HashMap::new(),
+            guards: Guards::new(numbers),
         }
     }
 
@@ -173,8 +177,12 @@ impl Recurrences {
                     self.exponential(product)
                 }
             },
-            (Node::Function(function, _), [first, ..]) => {
-                self.function(*function, *first, children.get(1).copied().unwrap_or(*first))?
+            (Node::Function(function, arguments), [first, ..]) => {
+                let second = children.get(1).copied().unwrap_or(*first);
+                match self.corner(*function, arguments, [*first, second]) {
+                    Some(place) => place,
+                    None => self.function(*function, *first)?,
+                }
             }
             (Node::Power(..) | Node::Function(..), _) => self.constant(f64::NAN),
         };
@@ -231,11 +239,16 @@ impl Recurrences {
             Some(product) => self.scale(coefficient, product),
         };
         for (_, place) in factors.iter().zip(places).filter(|(factor, _)| is_gate(factor)) {
-            if let Operation::Choose { corner, .. } = *self.tape.operation(*place) {
+            if let Operation::Choose {
+                corner,
+                positive,
+                negative,
+            } = *self.tape.operation(*place)
+            {
                 product = self.emit(Operation::Choose {
                     corner,
-                    positive: Some(product),
-                    negative: None,
+                    positive: positive.map(|_| product),
+                    negative: negative.map(|_| product),
                 });
             }
         }
@@ -359,21 +372,55 @@ impl Recurrences {
         self.quotient(of, root, sign, first)
     }
 
-    fn choose(&mut self, argument: usize, positive: Option<usize>, negative: Option<usize>) -> usize {
-        let corners = &mut self.tape.corners;
-        let same = corners.iter().position(|corner| corner.argument == argument);
-        let corner = same.unwrap_or(corners.len());
-        if same.is_none() {
-            corners.push(Corner { argument, side: 1.0 });
+    /// One of two series, by the sign of an argument, whose series is at a place.
+    fn choose(&mut self, argument: &Expr, place: usize, sides: [Option<usize>; 2]) -> usize {
+        let guard = self.guards.find_or_add(argument);
+        if guard.is_new {
+            self.tape.corners.push(Corner {
+                argument: place,
+                side: 1.0,
+            });
         }
+        let [positive, negative] = match guard.is_aligned {
+            true => sides,
+            false => [sides[1], sides[0]],
+        };
         self.emit(Operation::Choose {
-            corner,
+            corner: guard.index,
             positive,
             negative,
         })
     }
 
-    fn function(&mut self, function: Function, u: usize, v: usize) -> Result<usize, RecurrenceError> {
+    /// A function with a corner, by its arguments and the places of their series; `None` for any other.
+    fn corner(&mut self, function: Function, arguments: &[Expr], [u, v]: [usize; 2]) -> Option<usize> {
+        let [first, ..] = arguments else { return None };
+        Some(match function {
+            Function::Absolute => {
+                let minus = self.scale(-1.0, u);
+                self.choose(first, u, [Some(u), Some(minus)])
+            }
+            Function::Sign => {
+                let (one, minus) = (self.constant(1.0), self.constant(-1.0));
+                self.choose(first, u, [Some(one), Some(minus)])
+            }
+            Function::Step => {
+                let one = self.constant(1.0);
+                self.choose(first, u, [Some(one), None])
+            }
+            Function::Maximum | Function::Minimum => {
+                let difference = self.weighted(&[(1.0, u), (-1.0, v)]);
+                let sides = match function {
+                    Function::Maximum => [Some(u), Some(v)],
+                    _ => [Some(v), Some(u)],
+                };
+                self.choose(&(first - arguments.get(1)?), difference, sides)
+            }
+            _ => return None,
+        })
+    }
+
+    fn function(&mut self, function: Function, u: usize) -> Result<usize, RecurrenceError> {
         Ok(match function {
             Function::Sin => self.waves(u, false)[0],
             Function::Cos => self.waves(u, false)[1],
@@ -389,26 +436,6 @@ impl Recurrences {
             }
             Function::Asin => self.inverse_wave(u, 1.0, f64::asin),
             Function::Acos => self.inverse_wave(u, -1.0, f64::acos),
-            Function::Absolute => {
-                let minus = self.scale(-1.0, u);
-                self.choose(u, Some(u), Some(minus))
-            }
-            Function::Sign => {
-                let (one, minus) = (self.constant(1.0), self.constant(-1.0));
-                self.choose(u, Some(one), Some(minus))
-            }
-            Function::Step => {
-                let one = self.constant(1.0);
-                self.choose(u, Some(one), None)
-            }
-            Function::Maximum | Function::Minimum => {
-                let difference = self.weighted(&[(1.0, u), (-1.0, v)]);
-                let [larger, smaller] = [Some(u), Some(v)];
-                match function {
-                    Function::Maximum => self.choose(difference, larger, smaller),
-                    _ => self.choose(difference, smaller, larger),
-                }
-            }
             special => return Err(RecurrenceError::Function(special.name())),
         })
     }

@@ -40,7 +40,7 @@ pub(super) fn first_root(series: &[f64], from: f64, to: f64) -> Option<(f64, boo
     let [constant, slope, ..] = *series else { return None };
     // Most series have none, and the bounds about 0 say so.
     let [change, bend] = beyond(series, to.abs().max(from.abs()));
-    if constant.abs() > change {
+    if constant.abs() > change || change == 0.0 {
         return None;
     }
     let first = from + apart(from, to);

@@ -18,6 +18,7 @@ use super::{
 };
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError, Function, Node};
 use crate::numeric::ode::{self, Action, Kept, Looks, Point, StopReason, Trajectory, integrate_through};
+use crate::series::guard::Guards;
 use crate::symbol::{Symbol, fresh_stem};
 
 /// No step can be held to less: an estimate of its error is rounding below that.
@@ -93,7 +94,7 @@ impl Units {
         // Without a series there, the values themselves must do.
         let alone = || (f64::INFINITY, values.iter().map(|value| value.abs()).collect());
         let (reach, mut sizes): (f64, Vec<f64>) =
-            taylor::first_step(system, start, values, events).unwrap_or_else(alone);
+            taylor::first_step(system, [start, end], values, events).unwrap_or_else(alone);
         let smallest = sizes
             .iter()
             .copied()
@@ -289,6 +290,20 @@ impl Scaled<'_> {
         Ok(first)
     }
 
+    /// Takes the other side of every corner that rounding has put behind this point: it is met at the same time as the one that has just
+    /// been crossed, and no step would find it any more.
+    fn cross_with(&self, point: &mut Point<Vec<f64>>) {
+        for (corner, argument) in self.smooth.corners.iter().enumerate() {
+            let side = self.states + corner;
+            let left_over = side + self.corners();
+            let value = self.value_of(point.t, &point.y, argument);
+            if point.y[side] * (value - point.y[left_over]) < 0.0 {
+                point.y[left_over] = value;
+                point.y[side] = -point.y[side];
+            }
+        }
+    }
+
     /// The events of the user, and behind them the corners, where the motion changes sides.
     fn watched(&self, events: &[Event]) -> Vec<ode::Event<'_, Point<Vec<f64>>>> {
         let mut watched = Vec::with_capacity(self.smooth.events.len() + self.corners());
@@ -311,6 +326,7 @@ impl Scaled<'_> {
             let cross = move |mut point: Point<Vec<f64>>| {
                 point.y[left_over] = self.value_of(point.t, &point.y, argument);
                 point.y[side] = -point.y[side];
+                self.cross_with(&mut point);
                 (0, point)
             };
             let height = move |point: &Point<Vec<f64>>| {
@@ -358,6 +374,7 @@ impl Smooth {
         let mut corners = Corners {
             stem: fresh_stem("side", &known().collect::<Vec<_>>()),
             arguments: Vec::new(),
+            guards: Guards::new(&system.numbers),
         };
         let rates: Vec<Expr> = system
             .right
@@ -403,6 +420,7 @@ impl Smooth {
 struct Corners {
     stem: String,
     arguments: Vec<Expr>,
+    guards: Guards,
 }
 
 impl Corners {
@@ -410,26 +428,29 @@ impl Corners {
         Symbol::new(&format!("{}{index}", self.stem))
     }
 
-    /// The side of the corner with this argument.
-    fn of(&mut self, argument: &Expr) -> Expr {
-        let known = self.arguments.iter().position(|known| known == argument);
-        let index = known.unwrap_or(self.arguments.len());
-        if known.is_none() {
+    /// The sign of this argument, by the side of its corner.
+    fn sign(&mut self, argument: &Expr) -> Expr {
+        let guard = self.guards.find_or_add(argument);
+        if guard.is_new {
             self.arguments.push(argument.clone());
         }
-        Expr::from(self.side(index))
+        let side = Expr::from(self.side(guard.index));
+        match guard.is_aligned {
+            true => side,
+            false => -side,
+        }
     }
 
     /// The same expression with the sides in place of the signs.
     fn smooth(&mut self, expression: &Expr) -> Result<Expr, ExprError> {
         expression.fold(|expr, children: &[Expr]| match (expr.node(), children) {
-            (Node::Function(Function::Absolute, _), [u]) => Ok(Expr::product([self.of(u), u.clone()])),
+            (Node::Function(Function::Absolute, _), [u]) => Ok(Expr::product([self.sign(u), u.clone()])),
             (Node::Function(function @ (Function::Sign | Function::Step), _), [u]) => {
-                Expr::function(*function, vec![self.of(u)])
+                Expr::function(*function, vec![self.sign(u)])
             }
             (Node::Function(function @ (Function::Maximum | Function::Minimum), _), [u, w]) => {
                 let minus = |expr: &Expr| Expr::product([Expr::from(-1), expr.clone()]);
-                let side = self.of(&Expr::sum([u.clone(), minus(w)]));
+                let side = self.sign(&Expr::sum([u.clone(), minus(w)]));
                 let [above, below] =
                     [side.clone(), minus(&side)].map(|side| Expr::function(Function::Step, vec![side]));
                 let (larger, smaller) = match function {

@@ -79,22 +79,25 @@ fn order(tolerance: f64) -> usize {
     (1.0 - 0.5 * tolerance.ln()).ceil() as usize + 1
 }
 
-/// How far the first series reaches, and how large every state becomes on the way; `None` where there is none.
-pub(super) fn first_step(system: &System, start: f64, values: &[f64], events: &[Event]) -> Option<(f64, Vec<f64>)> {
+/// How far the first series reaches, and how large every state becomes on the way, within so much time; `None` where there is none.
+pub(super) fn first_step(
+    system: &System,
+    [start, end]: [f64; 2],
+    values: &[f64],
+    events: &[Event],
+) -> Option<(f64, Vec<f64>)> {
     const SAMPLES: u32 = 8;
     let tolerance = f64::EPSILON;
     let mut expansion = expansion(system, events, tolerance).ok()?;
     expansion.begin(start, values);
     expansion.expand(start, values).ok()?;
     let reach = expansion.step();
+    // The series of a free flight has no end, the flight itself has one at the next corner.
+    let longest = reach.min(end - start);
+    let corner = expansion.first_corner(longest).filter(|(_, place)| *place > 0.0);
+    let looked_at = corner.map_or(longest, |(_, place)| place);
     let size = |state: usize| {
-        let place = |sample: u32| {
-            if reach.is_finite() {
-                reach * f64::from(sample) / f64::from(SAMPLES)
-            } else {
-                0.0
-            }
-        };
+        let place = |sample: u32| looked_at * f64::from(sample) / f64::from(SAMPLES);
         let sizes = (0..=SAMPLES).map(|sample| value(expansion.state(state), place(sample)).abs());
         sizes.fold(0.0, f64::max)
     };
@@ -321,6 +324,8 @@ impl Run<'_> {
     fn has_missed_something(&self, last: &Last) -> bool {
         /// Of the size of a state on the step: what its rate there may be off, times the step.
         const ASTRAY: f64 = 1e-8;
+        // The terms that are left out are within the tolerance, their slopes within as many times it as the next order says.
+        let astray = ASTRAY.max((self.expansion.order + 1) as f64 * self.options.tolerance);
         let Some(step) = self.steps.last() else { return false };
         let differs = |(state, series): (usize, &[f64])| {
             let rate = self.expansion.state(state).get(1).copied().unwrap_or(0.0);
@@ -330,7 +335,7 @@ impl Run<'_> {
                 size += (coefficient * power).abs();
                 change += order as f64 * coefficient * power;
             }
-            (change - rate * last.length).abs() > ASTRAY * size
+            (change - rate * last.length).abs() > astray * size
         };
         step.coefficients.chunks(step.order + 1).enumerate().any(differs)
     }
@@ -410,7 +415,7 @@ impl Expansion {
     /// The coefficients of everything about a point.
     ///
     /// # Errors
-    /// The first state whose series has no finite value.
+    /// The first state whose series has no finite value, or the first of all where a corner has none.
     pub(super) fn expand(&mut self, time: f64, values: &[f64]) -> Result<(), usize> {
         for _ in 0..=self.tape.corners().count() {
             let result = self.expand_once(time, values);
@@ -444,9 +449,15 @@ impl Expansion {
                 self.tape.feed(state, self.outputs[state], n, 1.0);
             }
         }
-        match (0..size).find(|&state| self.state(state).iter().any(|value| !value.is_finite())) {
-            Some(state) => Err(state),
-            None => Ok(()),
+        let is_defined = |series: &[f64]| series.iter().all(|value| value.is_finite());
+        if let Some(state) = (0..size).find(|&state| !is_defined(self.state(state))) {
+            return Err(state);
+        }
+        // A corner with a value and no series, as that of a root that begins here, would not be seen to change its side.
+        let mut corners = self.tape.corners();
+        match corners.any(|(series, _)| series[0].is_finite() && !is_defined(series)) {
+            true => Err(0),
+            false => Ok(()),
         }
     }
 
@@ -550,7 +561,9 @@ impl Expansion {
             }
             None
         };
-        let found = self.tape.corners().enumerate().filter_map(met);
+        // What a side has no value for is not looked at.
+        let corners = self.tape.corners().enumerate();
+        let found = corners.filter(|(_, (series, _))| series[0].is_finite()).filter_map(met);
         found.min_by(|one, other| one.1.total_cmp(&other.1))
     }
 
@@ -616,9 +629,9 @@ impl Allowance {
         Self { order, parts }
     }
 
-    /// The lowest of the last orders.
+    /// The lowest of the last orders, above those that tell the size.
     fn first(order: usize) -> usize {
-        order.saturating_sub(LAST - 1).max(1)
+        order.saturating_sub(LAST - 1).max(order / 2 + 1)
     }
 
     /// The longest step, no longer than this, on which the last terms of a series of this order are within the tolerance.
@@ -641,7 +654,7 @@ impl Allowance {
             }
         }
         for _ in 0..TRIALS {
-            if h.is_infinite() || self.is_within(series, powers.of(h)) {
+            if h.is_infinite() || self.is_within(series, lead, powers.of(h)) {
                 break;
             }
             h *= SHORTER;
@@ -649,11 +662,12 @@ impl Allowance {
         h
     }
 
-    /// Whether the last terms of a series, at the place with these powers, are within the tolerance.
-    fn is_within(&self, series: &[f64], powers: &[f64]) -> bool {
+    /// Whether the last terms of a series that begins with the order `lead`, at the place with these powers, are within the tolerance.
+    fn is_within(&self, series: &[f64], lead: usize, powers: &[f64]) -> bool {
         let term = |k: usize| series[k].abs() * powers[k];
-        let size = (0..=self.order / 2).map(term).fold(0.0, f64::max);
-        let mut last = (Self::first(self.order)..=self.order).zip(self.parts);
+        let size = (lead..=lead.max(self.order / 2)).map(term).fold(0.0, f64::max);
+        let last = (Self::first(self.order)..=self.order).zip(self.parts);
+        let mut last = last.filter(|(k, _)| *k > lead);
         last.all(|(k, part)| term(k) <= size * part)
     }
 }

@@ -13,6 +13,7 @@ use num_traits::Zero;
 
 use crate::exact::rational::{Integer, ratio};
 use crate::expr::{Expr, ExprError, Function, Node};
+use crate::series::guard::Guard;
 use crate::symbol::Symbol;
 
 /// The same expression with its roots at corners so that they have a value on both sides. What a corner depends on must not jump, so
@@ -160,11 +161,8 @@ fn behind_gates(product: &Expr, factors: &[Expr], values: &BTreeMap<Symbol, f64>
             let (Node::Power(..), [base, exponent]) = (expr.node(), children) else {
                 return expr.with_children(children);
             };
-            let mut gated = false;
-            for gate in gates.iter().filter(|_| draws_root(exponent, values)) {
-                gated = gated || is_open_with(base, gate, values)?;
-            }
-            match gated {
+            let is_gated = || gates.iter().any(|gate| is_open_with(base, gate, values));
+            match draws_root(exponent, values) && is_gated() {
                 true => even_root(base, exponent),
                 false => expr.with_children(children),
             }
@@ -175,25 +173,16 @@ fn behind_gates(product: &Expr, factors: &[Expr], values: &BTreeMap<Symbol, f64>
 }
 
 /// Whether a base is a positive number times the argument of a gate, or times its sine: zero where the gate opens, and positive behind it.
-fn is_open_with(base: &Expr, gate: &Expr, values: &BTreeMap<Symbol, f64>) -> Result<bool, ExprError> {
-    let in_proportion = |one: &Expr, other: &Expr| -> Result<bool, ExprError> {
-        let Some(name) = other.symbols().into_iter().find(|name| !values.contains_key(name)) else {
-            return Ok(false);
-        };
-        let (above, below) = (one.differentiate(name)?, other.differentiate(name)?);
-        if below.is_zero() || !is_number(&above, values) || !is_number(&below, values) {
-            return Ok(false);
-        }
-        let ratio = Expr::divide(&above, &below)?;
-        Ok(is_positive(&ratio, values) && (one - &(&ratio * other)).expand()?.is_zero())
+fn is_open_with(base: &Expr, gate: &Expr, values: &BTreeMap<Symbol, f64>) -> bool {
+    let in_proportion = |one: &Expr, other: &Expr| {
+        let ratio = Guard::new(one, values).ratio_to(&Guard::new(other, values));
+        ratio.is_some_and(|ratio| ratio > 0.0)
     };
-    if in_proportion(base, gate)? {
-        return Ok(true);
+    if in_proportion(base, gate) {
+        return true;
     }
     match one_function(base, values) {
-        (before, Some((Function::Sin, [argument]))) => {
-            Ok(is_positive(&before, values) && in_proportion(argument, gate)?)
-        }
-        _ => Ok(false),
+        (before, Some((Function::Sin, [argument]))) => is_positive(&before, values) && in_proportion(argument, gate),
+        _ => false,
     }
 }

@@ -466,3 +466,71 @@ fn a_state_that_leaves_the_range_of_numbers_ends_the_path() {
         }
     }
 }
+
+/// Corners with other arguments at the same place, and one that is another turned round: from x = 1 the force is 4 x on the right and x on the
+/// left, so that the motion comes back after pi/2 + pi.
+#[test]
+fn corners_at_the_same_place_are_all_switched() {
+    let forces = [
+        "-x - x*H(x) - x*H(x^3) - x*H(sin(x))",
+        "-x - 3*max(x, 0)",
+        "-5/2*x - 3/4*abs(x) - 3/4*sgn(x)*x",
+        "-x - max(x, 0) - x*(1 - H(-x)) - x*H(2*x)",
+        "-4*x + 3*x*H(-3*x) + 2*min(x, 0) - 2*x*H(-x/2)",
+    ];
+    for force in forces {
+        let system = system(&["x", "v"], &["v", force], &[]).unwrap();
+        let period = 1.5 * std::f64::consts::PI;
+        for path in by_both(&system, &[1.0, 0.0], 3.0 * period, &[]) {
+            assert_eq!(path.reason(), End::Reached, "{force}");
+            for (time, expected) in [(1.0 / 6.0, [0.0, -2.0]), (2.0, [1.0, 0.0]), (3.0, [1.0, 0.0])] {
+                let state = path.at(time * period).expect("a state");
+                let astray = (state[0] - expected[0]).abs().max((state[1] - expected[1]).abs());
+                assert!(astray < 1e-9, "{force}: {state:?} after {time} periods");
+            }
+        }
+    }
+}
+
+/// A loose tolerance makes a motion less exact, not shorter, and takes few steps.
+#[test]
+fn a_loose_tolerance_is_followed_to_the_end() {
+    let motions: [(&[&str; 2], [f64; 2], fn(f64) -> f64); 3] = [
+        (&["v", "-x"], [0.0, 1.0], f64::sin),
+        (&["v", "-x + 3*x/4/(1 + x^2/1e9)"], [1.0, 0.0], |t| (0.5 * t).cos()),
+        (&["1", "3*x^2"], [0.0, 0.0], |t| t),
+    ];
+    for (right, start, exact) in motions {
+        let system = system(&["x", "v"], right, &[]).unwrap();
+        for tolerance in [0.1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
+            let options = Options {
+                tolerance,
+                ..Options::default()
+            };
+            let path = system.solve(0.0, &start, 20.0, &[], &options).expect("a path");
+            assert_eq!(
+                (path.end(), path.reason()),
+                (20.0, End::Reached),
+                "{right:?} {tolerance}"
+            );
+            assert!(
+                path.step_count() <= 60,
+                "{right:?} {tolerance}: {} steps",
+                path.step_count()
+            );
+            let error = (path.at(20.0).expect("a state")[0] - exact(20.0)).abs();
+            assert!(error < 100.0 * tolerance + 1e-6, "{right:?} {tolerance}: {error}");
+        }
+    }
+}
+
+/// A series that begins with a high order: `x' = t^13` from zero.
+#[test]
+fn a_state_that_begins_with_a_high_power_is_followed() {
+    let power = system(&["x"], &["14*t^13"], &[]).unwrap();
+    for path in by_both(&power, &[0.0], 2.0, &[]) {
+        assert_eq!(path.reason(), End::Reached);
+        let end = path.at(2.0).expect("a state")[0];
+        assert!((end / 2.0_f64.powi(14) - 1.0).abs() < 1e-12, "{end}");
+    }
+}

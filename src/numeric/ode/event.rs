@@ -117,6 +117,8 @@ pub(super) struct Watch {
     /// Sign of the last sample that was not zero; `None` at the start of a phase, and after the function reached zero
     /// at the very end of a step: from there the next sign is the start, not a crossing.
     positive: Option<bool>,
+    /// Whether the phase started on the surface and has not left it yet.
+    starts_on_surface: bool,
 }
 
 impl Watch {
@@ -142,16 +144,20 @@ impl Watch {
             }
             samples.push((fraction, value));
         }
-        let mut starts_on_surface = first && samples.first().is_some_and(|&(_, value)| value == 0.0);
-        if starts_on_surface && moved.is_some_and(|moved| (event.function)(moved) == 0.0) {
-            // What it depends on is at rest: it leaves as a square of time at least; a slope there is the error of the polynomial,
-            // and has any sign.
+        let starts_on_surface = first && samples.first().is_some_and(|&(_, value)| value == 0.0);
+        if starts_on_surface {
+            self.starts_on_surface = true;
+            // What rounding leaves of the values has any sign, and so has the error of the polynomial where what the function depends on is
+            // at rest: it leaves as a square of time at least.
+            let rounding = rounding_at(event, &step.state_at(0.0));
             let largest = samples
                 .iter()
                 .fold(0.0, |largest: f64, (_, value)| largest.max(value.abs()));
+            let is_at_rest = moved.is_some_and(|moved| (event.function)(moved) == 0.0);
+            let slope_error = if is_at_rest { SLOPE_ERROR * largest } else { 0.0 };
             samples
                 .iter_mut()
-                .take_while(|(fraction, value)| value.abs() <= SLOPE_ERROR * fraction * largest)
+                .take_while(|(fraction, value)| value.abs() <= rounding.max(slope_error * fraction))
                 .for_each(|(_, value)| *value = 0.0);
         }
         insert_near_misses(&mut samples, value_at);
@@ -176,10 +182,10 @@ impl Watch {
                     self.positive = Some(!positive);
                 }
                 (None, _) if value != 0.0 => {
-                    if starts_on_surface && event.leaves_at_once(value > 0.0) {
+                    if self.starts_on_surface && event.leaves_at_once(value > 0.0) {
                         found.push((0.0, value > 0.0));
                     }
-                    starts_on_surface = false;
+                    self.starts_on_surface = false;
                     self.positive = Some(value > 0.0);
                 }
                 _ => {}
@@ -189,6 +195,21 @@ impl Watch {
         found.retain(|&(_, rising)| event.counts(rising));
         Ok(found)
     }
+}
+
+/// The change of an event function where each of its values is changed by its last digits.
+fn rounding_at<S: Sample>(event: &Event<S>, state: &S) -> f64 {
+    const LAST_DIGITS: f64 = 4.0 * f64::EPSILON;
+    let (time, values) = (state.time(), state.values());
+    let here = (event.function)(state);
+    let change = |time: f64, values: &S::Values| ((event.function)(&S::new(time, values)) - here).abs();
+    let changes = (0..values.as_ref().len()).map(|index| {
+        let mut changed = values.clone();
+        changed.as_mut()[index] *= 1.0 + LAST_DIGITS;
+        change(time, &changed)
+    });
+    let sum = changes.sum::<f64>() + change(time * (1.0 + LAST_DIGITS), &values);
+    if sum.is_finite() { sum } else { 0.0 }
 }
 
 /// Chebyshev points of a step, both ends included.

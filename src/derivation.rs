@@ -76,7 +76,12 @@ pub enum Formula {
     /// An expression.
     Expression(Expr),
     /// A motion or a force along it.
-    Waves(FourierSeries<Polynomials>),
+    Waves {
+        /// The harmonics.
+        series: FourierSeries<Polynomials>,
+        /// The name of the phase.
+        phase: Symbol,
+    },
     /// `y'' + square*y`, derivatives in theta or, with `square` = omega^2, in time.
     Oscillator {
         /// `y`.
@@ -139,6 +144,16 @@ impl Line {
         Self::equal([left.into(), right.into()])
     }
 
+    /// The same line with another name of the phase in its Fourier series.
+    pub(crate) fn with_phase(mut self, name: Symbol) -> Self {
+        for formula in &mut self.equal {
+            if let Formula::Waves { phase, .. } = formula {
+                *phase = name;
+            }
+        }
+        self
+    }
+
     /// The same line with words in front of it.
     pub fn because(self, words: impl Into<String>) -> Self {
         Self {
@@ -175,21 +190,24 @@ impl From<Symbol> for Formula {
 
 impl From<&Polynomial> for Formula {
     fn from(polynomial: &Polynomial) -> Self {
-        Self::Waves(FourierSeries::constant(POLYNOMIALS, polynomial.clone()))
+        FourierSeries::constant(POLYNOMIALS, polynomial.clone()).into()
     }
 }
 
 impl From<FourierSeries<Polynomials>> for Formula {
     fn from(series: FourierSeries<Polynomials>) -> Self {
-        Self::Waves(series)
+        Self::Waves {
+            series,
+            phase: Symbol::new("theta"),
+        }
     }
 }
 
 /// Harmonics as they are typed: `cos(3*theta)`.
 pub const NOTATION: Notation = Notation {
-    wave: |function, k| match k {
-        1 => format!("{function}(theta)"),
-        _ => format!("{function}({k}*theta)"),
+    wave: |function, k, phase| match k {
+        1 => format!("{function}({phase})"),
+        _ => format!("{function}({k}*{phase})"),
     },
     times: "*",
     brackets: ["(", ")"],
@@ -213,8 +231,8 @@ impl fmt::Display for Formula {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Expression(expression) => write!(formatter, "{expression}"),
-            Self::Waves(series) => {
-                let waves = terms::waves(series, ToString::to_string, &NOTATION);
+            Self::Waves { series, phase } => {
+                let waves = terms::waves(series, ToString::to_string, &NOTATION, *phase);
                 formatter.write_str(&terms::sum(waves))
             }
             Self::Oscillator { of, square } => {

@@ -137,7 +137,8 @@ impl TransitionCurves {
     /// The frequency of the coefficients in the time of the equation.
     pub fn driving_frequency(&self) -> Expr {
         let frequency = Expr::from(&self.frequency.polynomial());
-        self.time_scale.map_or(frequency.clone(), |name| &frequency * &Expr::from(name))
+        self.time_scale
+            .map_or(frequency.clone(), |name| &frequency * &Expr::from(name))
     }
 
     /// T, the period of the coefficients, in the time of the equation.
@@ -202,7 +203,9 @@ pub enum HillError {
     #[error("`{0}` is neither a letter of the mean stiffness alone nor the frequency")]
     NotAnUnknown(String),
     /// A frequency that stands in several coefficients also in the time that it scales.
-    #[error("the curves cannot be solved for `{0}`: with the time tau = {0}*t it still stands in several terms of the coefficients, {1}")]
+    #[error(
+        "the curves cannot be solved for `{0}`: with the time tau = {0}*t it still stands in several terms of the coefficients, {1}"
+    )]
     InSeveralTerms(Symbol, String),
     /// A mean stiffness that is zero where the frequency is asked for.
     #[error("the mean stiffness is `{0}`, and the frequency can be found beside a single positive term alone")]
@@ -249,7 +252,9 @@ impl HillError {
             Self::NoUnknown => {
                 "write the equation with a letter, as in `x'' + (delta + eps*cos(2*t))*x` or with cos(Omega*t)"
             }
-            Self::SeveralUnknowns(_) | Self::NotAnUnknown(_) | Self::InSeveralTerms(..) => "choose one with `--for NAME`",
+            Self::SeveralUnknowns(_) | Self::NotAnUnknown(_) | Self::InSeveralTerms(..) => {
+                "choose one with `--for NAME`"
+            }
             Self::Stiffness(_) => "choose a letter of the mean stiffness with `--for NAME`",
             Self::NumberIsSmall(_) => "write `eps*cos(2*t)` and give its number with `--at eps=0.2`",
             Self::SeveralSmall(_) | Self::UnknownSmall(_) | Self::NotSmall(..) => {
@@ -529,7 +534,10 @@ fn unknown(
     };
     if let Some(asked) = asked {
         let name = Symbol::new(asked);
-        let power = mean.terms().map(|(monomial, _)| monomial.exponent(name)).find(|power| *power != 0);
+        let power = mean
+            .terms()
+            .map(|(monomial, _)| monomial.exponent(name))
+            .find(|power| *power != 0);
         return match (power.filter(|_| alone(&name)), driving) {
             (Some(power), _) => Ok(Unknown::Stiffness { name, power }),
             (None, Some(frequency)) if frequency == name => Ok(Unknown::Frequency(name)),
@@ -548,7 +556,10 @@ fn unknown(
 
 /// The terms of the coefficients in which a letter stands: `c/W`, `g/(l*W^2)`.
 fn terms_with(name: Symbol, coefficients: [&FourierSeries<Polynomials>; 2]) -> String {
-    let terms = coefficients.into_iter().flat_map(FourierSeries::numerators).flat_map(Polynomial::terms);
+    let terms = coefficients
+        .into_iter()
+        .flat_map(FourierSeries::numerators)
+        .flat_map(Polynomial::terms);
     let mut terms: Vec<String> = terms
         .filter(|(monomial, _)| monomial.exponent(name) != 0)
         .map(|(monomial, number)| format!("`{}`", Expr::from(&Polynomial::term(monomial.clone(), number.clone()))))

@@ -237,7 +237,9 @@ fn true_value(
             // The equation without the unknown, where its power is one; else beside the formula, and once more at what comes of it.
             let mut reference = match power {
                 1 => 0.0,
-                _ => formula(curves, curve, numbers).filter(|value| *value != 0.0).unwrap_or(1.0),
+                _ => formula(curves, curve, numbers)
+                    .filter(|value| *value != 0.0)
+                    .unwrap_or(1.0),
             };
             let mut value = None;
             for _ in 0..if power == 1 { 1 } else { 3 } {
@@ -251,7 +253,8 @@ fn true_value(
                 let rounding = ROUNDING * coefficients.frequency.powi(2);
                 let mu = mu.is_real.then_some(mu.value);
                 let mu = mu.map(|mu| if mu.abs() < rounding { 0.0 } else { mu / slope });
-                value = mu.and_then(|mu| letter_of_power(mu + if power == 1 { 0.0 } else { reference.powi(power) }, power));
+                value =
+                    mu.and_then(|mu| letter_of_power(mu + if power == 1 { 0.0 } else { reference.powi(power) }, power));
                 value = value.filter(|value| value.is_finite());
                 let Some(better) = value else { break };
                 reference = better;

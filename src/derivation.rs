@@ -77,7 +77,12 @@ pub enum Formula {
     /// An expression.
     Expression(Expr),
     /// A motion or a force along it.
-    Waves(FourierSeries<Polynomials>),
+    Waves {
+        /// The harmonics.
+        series: FourierSeries<Polynomials>,
+        /// The name of the phase.
+        phase: Symbol,
+    },
     /// `y'' + square*y`, derivatives in theta or, with `square` = omega^2, in time.
     Oscillator {
         /// `y`.
@@ -149,6 +154,16 @@ impl Line {
         }
     }
 
+    /// The same line with another name of the phase in its Fourier series.
+    pub(crate) fn with_phase(mut self, name: Symbol) -> Self {
+        for formula in &mut self.equal {
+            if let Formula::Waves { phase, .. } = formula {
+                *phase = name;
+            }
+        }
+        self
+    }
+
     /// The same line with words in front of it.
     pub fn because(self, words: impl Into<String>) -> Self {
         Self {
@@ -168,7 +183,10 @@ impl Formula {
         let changed = |expression: &Expr| expression.with_numbers(change).unwrap_or_else(|_| expression.clone());
         match self {
             Self::Expression(expression) => Self::Expression(changed(expression)),
-            Self::Waves(series) => Self::Waves(series.map(POLYNOMIALS, |coefficient, _| coefficient.map(change))),
+            Self::Waves { series, phase } => Self::Waves {
+                series: series.map(POLYNOMIALS, |coefficient, _| coefficient.map(change)),
+                phase: *phase,
+            },
             Self::Oscillator { of, square } => Self::Oscillator {
                 of: *of,
                 square: changed(square),
@@ -202,7 +220,7 @@ impl Formula {
     pub fn symbols(&self) -> BTreeSet<Symbol> {
         match self {
             Self::Expression(expression) => expression.symbols(),
-            Self::Waves(series) => series.numerators().flat_map(Polynomial::symbols).collect(),
+            Self::Waves { series, .. } => series.numerators().flat_map(Polynomial::symbols).collect(),
             Self::Oscillator { of, square } => square.symbols().into_iter().chain([*of]).collect(),
             Self::AtZero { of, .. } => [*of].into(),
             Self::Integral {
@@ -248,21 +266,24 @@ impl From<Symbol> for Formula {
 
 impl From<&Polynomial> for Formula {
     fn from(polynomial: &Polynomial) -> Self {
-        Self::Waves(FourierSeries::constant(POLYNOMIALS, polynomial.clone()))
+        FourierSeries::constant(POLYNOMIALS, polynomial.clone()).into()
     }
 }
 
 impl From<FourierSeries<Polynomials>> for Formula {
     fn from(series: FourierSeries<Polynomials>) -> Self {
-        Self::Waves(series)
+        Self::Waves {
+            series,
+            phase: Symbol::new("theta"),
+        }
     }
 }
 
 /// Harmonics as they are typed: `cos(3*theta)`.
 pub const NOTATION: Notation = Notation {
-    wave: |function, k| match k {
-        1 => format!("{function}(theta)"),
-        _ => format!("{function}({k}*theta)"),
+    wave: |function, k, phase| match k {
+        1 => format!("{function}({phase})"),
+        _ => format!("{function}({k}*{phase})"),
     },
     times: "*",
     brackets: ["(", ")"],
@@ -286,8 +307,8 @@ impl fmt::Display for Formula {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Expression(expression) => write!(formatter, "{expression}"),
-            Self::Waves(series) => {
-                let waves = terms::waves(series, ToString::to_string, &NOTATION);
+            Self::Waves { series, phase } => {
+                let waves = terms::waves(series, ToString::to_string, &NOTATION, *phase);
                 formatter.write_str(&terms::sum(waves))
             }
             Self::Oscillator { of, square } => {

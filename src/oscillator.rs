@@ -20,11 +20,13 @@ use num_traits::Zero;
 
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Rational};
-use crate::expr::{Equation, Expr, ExprError, ParseError, Quotation, Typed, parse_equation};
+use crate::expr::{
+    Equation, Expr, ExprError, Function, NAMES_OF_ANSWERS, ParseError, Quotation, Typed, parse_equation,
+};
 use crate::series::taylor::{TaylorError, taylor};
 use crate::solution::note::Position;
 use crate::solution::{Advice, AmplitudeConvention, Definition, Method, Setting};
-use crate::symbol::{Symbol, fresh, fresh_stem};
+use crate::symbol::{Symbol, fresh, fresh_stem, phase_beside};
 use corner::near_rest;
 
 /// An equation of motion `x'' + force = 0` for one coordinate.
@@ -429,6 +431,76 @@ impl Oscillator {
         Ok(oscillator)
     }
 
+    /// The same equation with other names for the parameters that bear the name of something in an answer, the amplitudes `A` and `a`
+    /// or the frequency `omega`, and for each of them the name that was typed and the one that is written.
+    ///
+    /// The `omega` of a drive becomes `Omega`, that of a linear force `omega0`, all others get an index.
+    ///
+    /// # Errors
+    /// An expression beyond all limits.
+    ///
+    /// ```
+    /// use lindstedt::Oscillator;
+    ///
+    /// let (oscillator, renamed) = Oscillator::parse("x'' + omega^2*x + A*x^3 = 0")?.with_names_of_answers_free()?;
+    /// assert_eq!(oscillator.equation().to_string(), "x'' + omega0^2*x + A1*x^3 = 0");
+    /// assert_eq!(renamed, [("A".into(), "A1".into()), ("omega".into(), "omega0".into())]);
+    /// # Ok::<(), lindstedt::oscillator::OscillatorError>(())
+    /// ```
+    pub fn with_names_of_answers_free(&self) -> Result<(Self, Vec<(Symbol, Symbol)>), OscillatorError> {
+        let mut taken = self.names();
+        let driven = self.force.contains(Symbol::new("t"));
+        let slope = self.force.differentiate(self.coordinate)?;
+        let linear = at_rest(&slope, self.coordinate).unwrap_or_else(|_| Expr::zero());
+        let mut renamed = Vec::new();
+        for name in self
+            .parameters
+            .iter()
+            .filter(|name| NAMES_OF_ANSWERS.contains(&name.name()))
+        {
+            let wanted = match (name.name(), driven) {
+                ("omega", true) => "Omega".to_owned(),
+                ("omega", false) if linear.contains(*name) => "omega0".to_owned(),
+                _ => format!("{name}1"),
+            };
+            let written = fresh(&wanted, &taken);
+            taken.push(written);
+            renamed.push((*name, written));
+        }
+        let values = renamed.iter().map(|(typed, written)| (*typed, Expr::from(*written)));
+        let mut oscillator = self.with_values(&values.collect())?;
+        oscillator
+            .parameters
+            .extend(renamed.iter().map(|(_, written)| *written));
+        oscillator.parameters.sort_unstable();
+        Ok((oscillator, renamed))
+    }
+
+    /// Parameters whose names look like something else, `e` or `sinx`, each with how that would be written.
+    ///
+    /// ```
+    /// use lindstedt::Oscillator;
+    ///
+    /// let oscillator = Oscillator::parse("x'' + e*x + sinx = 0")?;
+    /// let names = oscillator.misleading_parameters();
+    /// assert_eq!(names[1], ("sinx".into(), "the function is `sin(x)`".to_owned()));
+    /// # Ok::<(), lindstedt::oscillator::OscillatorError>(())
+    /// ```
+    pub fn misleading_parameters(&self) -> Vec<(Symbol, String)> {
+        let names = self.names();
+        let meant = |name: &Symbol| match name.name() {
+            "e" => Some("Euler's number is `exp(1)`".to_owned()),
+            "i" | "j" => Some("there is no imaginary unit, for all quantities are real".to_owned()),
+            text => (1..text.len()).find_map(|end| {
+                let (function, argument) = (text.get(..end)?, text.get(end..)?);
+                let known = Function::from_name(function).is_some() && names.contains(&Symbol::new(argument));
+                known.then(|| format!("the function is `{function}({argument})`"))
+            }),
+        };
+        let parameters = self.parameters.iter();
+        parameters.filter_map(|name| Some((*name, meant(name)?))).collect()
+    }
+
     /// The velocity `x'`.
     pub fn velocity(&self) -> Symbol {
         self.coordinate.derivative()
@@ -439,6 +511,11 @@ impl Oscillator {
     pub fn names(&self) -> Vec<Symbol> {
         let own = [self.coordinate, Symbol::new("t")];
         self.parameters.iter().copied().chain(own).collect()
+    }
+
+    /// The name of the phase in what is derived from this equation: `theta`, unless the equation has that name.
+    pub fn phase(&self) -> Symbol {
+        phase_beside(&self.names())
     }
 
     /// The name of the linear frequency in running text: `omega0`, unless the equation uses that for something else.

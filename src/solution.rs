@@ -47,7 +47,7 @@ use crate::exact::scaled::Scaled;
 use crate::exact::{Doubles, POLYNOMIALS, Polynomial, Polynomials};
 use crate::expr::{Equation, Expr};
 use crate::series::FourierSeries;
-use crate::symbol::{Symbol, fresh};
+use crate::symbol::{Symbol, fresh, phase_beside};
 
 /// What the amplitude in a formula measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -64,6 +64,14 @@ impl AmplitudeConvention {
         match self {
             Self::Initial => "initial",
             Self::FirstHarmonic => "first-harmonic",
+        }
+    }
+
+    /// The other convention.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Initial => Self::FirstHarmonic,
+            Self::FirstHarmonic => Self::Initial,
         }
     }
 
@@ -321,6 +329,11 @@ impl Solution {
         let own = ["t".into(), self.coordinate()];
         let defined = self.definitions.iter().map(|definition| definition.symbol);
         self.parameters.iter().copied().chain(own).chain(defined).collect()
+    }
+
+    /// The name of the phase of the motion: `theta`, unless the equation has that name.
+    pub fn phase(&self) -> Symbol {
+        phase_beside(&self.names())
     }
 
     /// The name of the linear frequency: `omega0`, unless the equation uses that for something else.

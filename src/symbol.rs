@@ -104,6 +104,22 @@ pub fn fresh_stem(wanted: &str, taken: &[Symbol]) -> String {
     stem
 }
 
+/// The name of the phase of a motion: `theta`, or `phi` where the equation calls something of its own `theta`.
+///
+/// ```
+/// use lindstedt::expr::phase_beside;
+/// assert_eq!(phase_beside(&["x".into()]).name(), "theta");
+/// assert_eq!(phase_beside(&["theta".into()]).name(), "phi");
+/// ```
+pub fn phase_beside(taken: &[Symbol]) -> Symbol {
+    let theta = Symbol::new("theta");
+    if taken.contains(&theta) {
+        fresh("phi", taken)
+    } else {
+        theta
+    }
+}
+
 impl fmt::Display for Symbol {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(self.0)

@@ -9,7 +9,9 @@ use lindstedt::verify::comparison::{self, Comparison};
 use lindstedt::{Oscillator, verify};
 
 use super::answer::{Answer, no_such};
-use super::derive::{exact_values, formula, oscillator, with_known_equilibrium};
+use super::derive::{
+    exact_values, formula, notes_on_names, oscillator, renamed, with_known_equilibrium, with_new_names,
+};
 use super::problem::problem;
 use super::{Common, Failure, Format, Outcome, files, json_text, tolerance};
 
@@ -35,9 +37,13 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Compare)?;
-    let oscillator = oscillator(&formula, arguments.about.as_deref())?;
-    let (oscillator, values) =
-        with_known_equilibrium(oscillator, exact_values(&arguments.at, problem.values_of_motion())?)?;
+    let (oscillator, renamed) = renamed(&oscillator(&formula, arguments.about.as_deref())?)?;
+    let values = exact_values(&arguments.at, problem.values_of_motion())?;
+    let values = values
+        .map(|values| with_new_names(values, &renamed, &oscillator))
+        .transpose()?;
+    let notes = notes_on_names(&oscillator, values.as_ref(), &renamed);
+    let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
     let values = values.unwrap_or_default();
     let small = arguments.small.as_deref().or(formula.small);
     if small.is_some() {
@@ -69,8 +75,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         },
     };
     let passed = comparison.rows.iter().all(|row| row.verdict == Some(Verdict::Pass));
+    let notes: Vec<String> = notes.iter().map(|note| format!("note: {note}")).collect();
     Ok(Outcome {
         verdict: Some(Verdict::of(passed)),
+        note: (!notes.is_empty()).then(|| notes.join("\n")),
         ..answer.outcome(&arguments.common)?
     })
 }

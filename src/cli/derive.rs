@@ -121,7 +121,7 @@ fn order(text: &str) -> Result<Order, String> {
 pub(super) fn solved(arguments: &Question) -> Result<(Oscillator, Option<Values>, Solution), Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Derive)?;
-    let oscillator = oscillator(&formula, arguments.about.as_deref())?;
+    let (oscillator, renamed) = renamed(&oscillator(&formula, arguments.about.as_deref())?)?;
     let options = options(arguments, &formula, &oscillator)?;
     // The name is refused here, for a method that has no use for it would pass over it.
     if options.small.is_some() {
@@ -130,6 +130,10 @@ pub(super) fn solved(arguments: &Question) -> Result<(Oscillator, Option<Values>
             .map_err(|error| Failure::advised(&error, error.help()))?;
     }
     let values = exact_values(&arguments.at, problem.values_of_motion())?;
+    let values = values
+        .map(|values| with_new_names(values, &renamed, &oscillator))
+        .transpose()?;
+    let notes = notes_on_names(&oscillator, values.as_ref(), &renamed);
     let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
     let options = match &values {
         Some(values) => method::with_resonance_at(&oscillator, &options, values)
@@ -140,6 +144,7 @@ pub(super) fn solved(arguments: &Question) -> Result<(Oscillator, Option<Values>
         on_threads(arguments.jobs, || {
             let mut derived = solve_at(oscillator, values, &options)?;
             derived.2.convergence = verify::converges(&derived.2);
+            derived.2.validity.extend(notes);
             Ok(derived)
         })
     })
@@ -334,6 +339,52 @@ pub(super) fn oscillator(formula: &Formula, about: Option<&str>) -> Result<Oscil
         Some(symbol) => Err(usage(format!("`{symbol}` is no parameter of the equation"))),
         None => Ok(oscillator.about(value)),
     }
+}
+
+/// The oscillator with other names for the parameters that bear the name of something in an answer, and what was renamed.
+pub(super) fn renamed(oscillator: &Oscillator) -> Result<(Oscillator, Vec<(Symbol, Symbol)>), Failure> {
+    oscillator
+        .with_names_of_answers_free()
+        .map_err(|error| Failure::advised(&error, error.help()))
+}
+
+/// What is to be said of the names of parameters: those that are written otherwise, and those without a value that look like something
+/// else.
+pub(super) fn notes_on_names(
+    oscillator: &Oscillator,
+    values: Option<&Values>,
+    renamed: &[(Symbol, Symbol)],
+) -> Vec<Note> {
+    let renamed = renamed.iter().map(|&(typed, written)| Note::Renamed { typed, written });
+    let misleading = oscillator.misleading_parameters().into_iter();
+    let without_value = |(name, _): &(Symbol, String)| values.is_none_or(|values| values.get(*name).is_none());
+    let misleading = misleading
+        .filter(without_value)
+        .map(|(name, instead)| Note::Misleading { name, instead });
+    renamed.chain(misleading).collect()
+}
+
+/// The values of renamed parameters under their new names. Where nothing drives the motion a value of `A` is that of the amplitude.
+pub(super) fn with_new_names(
+    values: Values,
+    renamed: &[(Symbol, Symbol)],
+    oscillator: &Oscillator,
+) -> Result<Values, Failure> {
+    let driven = oscillator.force.contains(Symbol::new("t"));
+    let mut renamed_values = values;
+    for (typed, written) in renamed {
+        if typed.name() == "A" && !driven || renamed_values.get(*written).is_some() {
+            continue;
+        }
+        let (value, mut others) = renamed_values.split(&[*typed]);
+        if let Some(value) = value.into_values().next() {
+            others
+                .insert(*written, value)
+                .map_err(|error| Failure::Usage(format!("--at: {error}")))?;
+        }
+        renamed_values = others;
+    }
+    Ok(renamed_values)
 }
 
 /// Where the equilibrium in symbols is not that of the numbers given, the equation with those numbers in it.

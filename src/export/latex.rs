@@ -417,16 +417,21 @@ fn judged(verification: &Verification, series_of_omega: Option<f64>) -> String {
 
 /// Harmonics as they are set.
 pub(super) const NOTATION: Notation = Notation {
-    wave: |function, k| match k {
-        1 => format!("\\{function} \\theta"),
-        _ => format!("\\{function} {k}\\theta"),
+    wave: |function, k, phase| match k {
+        1 => format!("\\{function} {}", symbol(phase)),
+        _ => format!("\\{function} {k}{}", symbol(phase)),
     },
     times: " ",
     brackets: ["\\left(", "\\right)"],
 };
 
 pub(super) fn waves(series: &FourierSeries<Polynomials>, solution: &Solution) -> Vec<String> {
-    terms::waves(series, |coefficient| sum(&solution.ordered(coefficient)), &NOTATION)
+    terms::waves(
+        series,
+        |coefficient| sum(&solution.ordered(coefficient)),
+        &NOTATION,
+        solution.phase(),
+    )
 }
 
 /// The motion, one harmonic a line; nothing where only quadrature gives it.
@@ -440,7 +445,7 @@ fn motion(solution: &Solution) -> Vec<String> {
     }
     let waves = waves(&solution.displacement, solution);
     let mut lines = terms::lines(&waves, &format!("{coordinate}(t) &= "), "&\\quad ");
-    lines.push(format!("\\theta &= {}", angle(solution)));
+    lines.push(format!("{} &= {}", symbol(solution.phase()), angle(solution)));
     lines
 }
 

@@ -52,15 +52,18 @@ pub fn text(solution: &Solution) -> String {
     if !solution.steps.is_empty() {
         let (name, unit, [y, w]) = (solution.coordinate(), unit(solution), letters(solution));
         let (p, omega0) = (fresh("p", &solution.names()), solution.linear_frequency_name());
+        let phase = solution.phase();
         let frame = match is_homotopy(solution) {
             true => [
-                format!("{name} = {unit}*({y}0 + {p}*{y}1 + {p}^2*{y}2 + ...), theta = omega*t, derivatives in theta"),
+                format!(
+                    "{name} = {unit}*({y}0 + {p}*{y}1 + {p}^2*{y}2 + ...), {phase} = omega*t, derivatives in {phase}"
+                ),
                 format!(
                     "{omega0}^2 = omega^2*(1 - {p}*{w}1 - {p}^2*{w}2 - ...); the nonlinear terms stand at {p}, all in units of omega^2"
                 ),
             ],
             false => [
-                format!("{name} = {unit}*({y}0 + {y}1 + {y}2 + ...), theta = omega*t, derivatives in theta"),
+                format!("{name} = {unit}*({y}0 + {y}1 + {y}2 + ...), {phase} = omega*t, derivatives in {phase}"),
                 format!(
                     "omega^2 = {omega0}^2*(1 + {w}1 + {w}2 + ...); each order carries its power of the small parameter"
                 ),
@@ -86,18 +89,20 @@ pub fn text(solution: &Solution) -> String {
 
 fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
     let n = step.order;
+    let phase = solution.phase();
     let [y, w] = letters(solution);
     let waves = |series: &FourierSeries<Polynomials>| {
         terms::sum(terms::waves(
             series,
             |coefficient| solution.ordered(coefficient).to_string(),
             &NOTATION,
+            phase,
         ))
     };
     let conditions: Vec<String> = step
         .conditions
         .iter()
-        .map(|condition| condition_as_text(*condition, &format!("{y}{n}")))
+        .map(|condition| condition_as_text(*condition, &format!("{y}{n}"), phase))
         .collect();
     let mut lines = vec![format!("\n  order {n}")];
     if n == 0 {
@@ -112,16 +117,17 @@ fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
             &step.right_side(),
             |coefficient| solution.ordered(coefficient).to_string(),
             &NOTATION,
+            phase,
         );
         let resonant = match step.resonance.is_zero() {
-            true => format!("{secular}*cos(theta)"),
-            false => format!("({secular})*cos(theta)"),
+            true => format!("{secular}*cos({phase})"),
+            false => format!("({secular})*cos({phase})"),
         };
         lines.push(format!(
             "    {y}{n}'' + {y}{n} = {}",
             terms::sum(driven.into_iter().chain([resonant]))
         ));
-        lines.push(format!("    no secular cos(theta):  {secular} = 0"));
+        lines.push(format!("    no secular cos({phase}):  {secular} = 0"));
         if !step.resonance.is_zero() {
             lines.push(format!(
                 "    fixes               {w}{n} = {}",
@@ -132,13 +138,13 @@ fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
     lines.push(format!("    with                {}", conditions.join(", ")));
     if let Some(AmplitudeCondition { sine, unknown, value }) = &step.amplitude {
         lines.push(format!(
-            "    no secular sin(theta) at order {}:  {} = 0",
+            "    no secular sin({phase}) at order {}:  {} = 0",
             n + 1,
             solution.ordered(sine)
         ));
         let what = match n {
             0 => "the amplitude of the limit cycle".to_owned(),
-            _ => format!("the cos(theta) of {y}{n}"),
+            _ => format!("the cos({phase}) of {y}{n}"),
         };
         lines.push(format!("    fixes               {unknown} = {value}, {what}"));
     }
@@ -154,12 +160,12 @@ fn secular_terms(step: &Step, law: impl Fn(&Polynomial) -> String, correction: S
     }
 }
 
-fn condition_as_text(condition: Condition, y: &str) -> String {
+fn condition_as_text(condition: Condition, y: &str, phase: Symbol) -> String {
     match condition {
         Condition::Position(value) => format!("{y}(0) = {value}"),
         Condition::AtRest => format!("{y}'(0) = 0"),
-        Condition::NoCosine => format!("no cos(theta) in {y}"),
-        Condition::NoSine => format!("no sin(theta) in {y}"),
+        Condition::NoCosine => format!("no cos({phase}) in {y}"),
+        Condition::NoSine => format!("no sin({phase}) in {y}"),
     }
 }
 
@@ -199,7 +205,8 @@ pub(super) fn rows(solution: &Solution) -> Vec<String> {
             ),
         };
         lines.push(format!(
-            "{name} &= {unit} \\left({motion}\\right), \\qquad \\theta = \\omega t"
+            "{name} &= {unit} \\left({motion}\\right), \\qquad {} = \\omega t",
+            symbol(solution.phase())
         ));
         lines.push(squared);
     }
@@ -212,13 +219,14 @@ pub(super) fn rows(solution: &Solution) -> Vec<String> {
 
 fn order_as_latex(step: &Step, solution: &Solution) -> Vec<String> {
     let n = step.order;
+    let phase = symbol(solution.phase());
     let [y, w] = letters(solution);
     let (y, w) = (indexed(&y, n), indexed(&w, n));
     let law = |polynomial: &Polynomial| latex::sum(&solution.ordered(polynomial));
     let conditions: Vec<String> = step
         .conditions
         .iter()
-        .map(|condition| condition_as_latex(*condition, &y))
+        .map(|condition| condition_as_latex(*condition, &y, &phase))
         .collect();
     let conditions = conditions.join(", \\quad ");
     let mut lines = Vec::new();
@@ -227,8 +235,8 @@ fn order_as_latex(step: &Step, solution: &Solution) -> Vec<String> {
     } else {
         let secular = secular_terms(step, law, w.to_string());
         let resonant = match step.resonance.is_zero() {
-            true => format!("{secular} \\cos \\theta"),
-            false => format!("\\left({secular}\\right) \\cos \\theta"),
+            true => format!("{secular} \\cos {phase}"),
+            false => format!("\\left({secular}\\right) \\cos {phase}"),
         };
         let driven = latex::waves(&step.right_side(), solution);
         let right_side = terms::sum(driven.into_iter().chain([resonant]));
@@ -241,7 +249,7 @@ fn order_as_latex(step: &Step, solution: &Solution) -> Vec<String> {
     }
     if let Some(condition) = &step.amplitude {
         lines.push(format!(
-            "{} &= 0 \\quad\\Rightarrow\\quad {} = {} \\qquad \\text{{(no secular $\\sin \\theta$ at order {})}}",
+            "{} &= 0 \\quad\\Rightarrow\\quad {} = {} \\qquad \\text{{(no secular $\\sin {phase}$ at order {})}}",
             law(&condition.sine),
             symbol(condition.unknown),
             latex::expression(&condition.value),
@@ -253,12 +261,12 @@ fn order_as_latex(step: &Step, solution: &Solution) -> Vec<String> {
     lines
 }
 
-fn condition_as_latex(condition: Condition, y: &str) -> String {
+fn condition_as_latex(condition: Condition, y: &str, phase: &str) -> String {
     match condition {
         Condition::Position(value) => format!("{y}(0) = {value}"),
         Condition::AtRest => format!("{y}'(0) = 0"),
-        Condition::NoCosine => format!("\\text{{no $\\cos \\theta$ in ${y}$}}"),
-        Condition::NoSine => format!("\\text{{no $\\sin \\theta$ in ${y}$}}"),
+        Condition::NoCosine => format!("\\text{{no $\\cos {phase}$ in ${y}$}}"),
+        Condition::NoSine => format!("\\text{{no $\\sin {phase}$ in ${y}$}}"),
     }
 }
 
@@ -279,10 +287,11 @@ pub(super) fn line_as_latex(line: &Line) -> Vec<String> {
 fn formula_as_latex(formula: &Formula) -> String {
     match formula {
         Formula::Expression(expression) => latex::expression(expression),
-        Formula::Waves(series) => terms::sum(terms::waves(
+        Formula::Waves { series, phase } => terms::sum(terms::waves(
             series,
             |coefficient| latex::expression(&Expr::from(coefficient)),
             &latex::NOTATION,
+            *phase,
         )),
         Formula::Oscillator { of, square } => {
             let linear = latex::expression(&(square * &Expr::from(*of)));

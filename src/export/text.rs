@@ -17,7 +17,7 @@ use crate::mechanics::MechanismStudy;
 use crate::optimize::Study;
 use crate::report::{self, Block, Document};
 use crate::series::terms;
-use crate::solution::{Method, Solution};
+use crate::solution::{Method, Solution, constant_in_words};
 use crate::symbol::Symbol;
 use crate::verify::comparison::Comparison;
 use crate::verify::{Followed, Verification};
@@ -310,10 +310,11 @@ fn motion(solution: &Solution) -> String {
         &solution.displacement,
         |coefficient| solution.ordered(coefficient).to_string(),
         &NOTATION,
+        solution.phase(),
     );
     let first = format!("  {}(t) = ", solution.coordinate());
     let mut lines = terms::lines(&waves, &first, "         ");
-    lines.push(format!("         theta = {}\n", angle(solution)));
+    lines.push(format!("         {} = {}\n", solution.phase(), angle(solution)));
     lines.join("\n")
 }
 
@@ -374,7 +375,9 @@ pub(super) fn judgement(
     /// Of the frequency: no order that there is takes such an error into the last digits at once.
     const LARGE: f64 = 1e-5;
     let at = verification.at.iter();
-    let at: Vec<String> = at.map(|(name, value)| format!("{name} = {value}")).collect();
+    let at: Vec<String> = at
+        .map(|(name, value)| format!("{name} = {}", constant_in_words(value)))
+        .collect();
     let heading = match at.is_empty() {
         true => "Judged against the true motion".to_owned(),
         false => format!("Judged against the true motion at {}", at.join(", ")),

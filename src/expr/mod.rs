@@ -58,13 +58,13 @@ pub use function::Function;
 // Problem files point at their mistakes in the same way.
 #[cfg(feature = "toml")]
 pub(crate) use parse::excerpt;
-pub use parse::{Equation, ParseError, RESERVED_NAMES, parse_equation, parse_expression};
+pub use parse::{Equation, NAMES_OF_ANSWERS, ParseError, parse_equation, parse_expression};
 pub use print::Fraction;
 pub(crate) use print::Inside;
 pub use rounding::Rounded;
 pub use typed::{Quotation, Typed};
 
-pub use crate::symbol::{fresh, fresh_stem};
+pub use crate::symbol::{fresh, fresh_stem, phase_beside};
 
 /// The largest numerator or denominator of an exponent that [`Expr::power`] accepts on anything but a number.
 pub const LARGEST_EXPONENT: u32 = 10_000;

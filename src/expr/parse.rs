@@ -35,9 +35,11 @@ pub(crate) use error::excerpt;
 use error::shortened;
 use lexer::{Kind, Token};
 
-/// Names that an equation may not use for parameters: the answers are written with them. `omega0` is none of them: where
-/// an equation uses it for something else than its linear frequency, the answer writes `omega0_` for that.
-pub const RESERVED_NAMES: [&str; 4] = ["A", "a", "theta", "omega"];
+/// Names of the amplitudes and the frequency in an answer. No coordinate may have one of them, and where a parameter has one,
+/// [`Oscillator::with_names_of_answers_free`](crate::Oscillator::with_names_of_answers_free) gives it another before a formula is
+/// derived. `omega0` and `theta` are none of them: where an equation uses them for something of its own, the answer writes
+/// `omega0_` and `phi`.
+pub const NAMES_OF_ANSWERS: [&str; 3] = ["A", "a", "omega"];
 
 /// Spellings of what is no number.
 const NOT_NUMBERS: [&str; 3] = ["nan", "inf", "infinity"];
@@ -99,7 +101,7 @@ pub fn parse_expression(text: &str) -> Result<Expr, ParseError> {
 /// Reads an equation of motion such as `x'' + x + eps*x^3 = 0`.
 ///
 /// # Errors
-/// See [`ParseError`]; also for [`RESERVED_NAMES`], and for primes on more than a letter, a Greek one by name, with or without an index.
+/// See [`ParseError`]; also for a coordinate with one of the [`NAMES_OF_ANSWERS`], and for primes on more than a letter, a Greek one by name, with or without an index.
 ///
 /// ```
 /// use lindstedt::expr::parse_equation;
@@ -547,13 +549,17 @@ mod tests {
     }
 
     #[test]
-    fn the_names_of_answers_are_read_in_expressions_alone() {
-        for name in RESERVED_NAMES {
+    fn the_names_of_answers_are_taken_but_for_the_coordinate() {
+        for name in NAMES_OF_ANSWERS {
             assert_eq!(parse_expression(name).unwrap(), Expr::symbol(name));
-            let error = parse_equation(&format!("x'' + {name}*x = 0")).unwrap_err();
-            assert_eq!((error.span.start, error.span.len()), (6, name.len()), "{error}");
+            assert!(parse_equation(&format!("x'' + {name}*x = 0")).is_ok());
+            let error = parse_equation(&format!("{name}'' + {name} = 0")).unwrap_err();
+            assert_eq!((error.span.start, error.span.len()), (0, name.len() + 2), "{error}");
         }
-        assert!(parse_expression("theta'").is_ok() && parse_equation("theta'' + theta").is_err());
+        assert_eq!(
+            parse_equation("theta'' + sin(theta)").unwrap().coordinate.name(),
+            "theta"
+        );
     }
 
     /// Text, the part that is meant, the message and the help.
@@ -707,10 +713,10 @@ mod tests {
             ("__import__(\"os\").getcwd()", "_", "a name begins with a letter", ""),
             ("|x|", "|", "`|` is no sign here", "the absolute value is `abs(x)`"),
             (
-                "x''+A*x",
-                "A",
+                "A''+A",
+                "A''",
                 "`A` is reserved: it is the amplitude in the answer",
-                "another name, such as `A1`",
+                "another name, such as `x`",
             ),
             (
                 "u'' + x",
@@ -729,12 +735,6 @@ mod tests {
                 "kx''",
                 "`kx''`: primes belong to a single letter or a Greek one",
                 "try `x''` or `phi''`",
-            ),
-            (
-                "theta'' + sin(theta)",
-                "theta''",
-                "`theta` is reserved: it is the phase in the answer",
-                "another name, such as `phi`",
             ),
             ("", "", "the text is empty", "an example: `x'' + sin(x) = 0`"),
             (" \n", "", "the text is empty", "an example: `x'' + sin(x) = 0`"),

@@ -171,10 +171,10 @@ fn middle_and_square(power: &Powers, tongue: usize, matrix: &[[Polynomial; 2]; 2
         .sum_with(&upper_right.product(lower_left));
     let root = power.cut(&root, known);
     match hill.unknown {
-        Unknown::Stiffness(_) => {
-            let factor = hill.factor.recip();
-            let middle = middle.less(&hill.constant).scaled(&factor);
-            (middle, root.scaled(&(&factor * &factor)))
+        Unknown::Stiffness { .. } => {
+            let inverse = power.inverse_factor();
+            let middle = middle.less(&hill.constant).product(&inverse);
+            (middle, root.product(&inverse.product(&inverse)))
         }
         Unknown::Frequency(name) => power.frequency_squared(&middle, &root, tongue, name),
     }
@@ -327,16 +327,27 @@ impl Powers<'_> {
     /// Whether what a curve gives falls where the eigenvalue grows.
     fn falls(&self) -> bool {
         match self.hill.unknown {
-            Unknown::Stiffness(_) => self.hill.factor < Rational::zero(),
+            Unknown::Stiffness { .. } => {
+                let factor = self.hill.factor.single_term();
+                factor.is_some_and(|(_, number)| *number < Rational::zero())
+            }
             // The frequency has to be lower for the eigenvalue to be the mean stiffness still.
             Unknown::Frequency(_) => true,
         }
     }
 
+    /// One over the term before the unknown power.
+    fn inverse_factor(&self) -> Polynomial {
+        let factor = self.hill.factor.single_term();
+        factor.map_or_else(Polynomial::zero, |(monomial, number)| {
+            Polynomial::term(monomial.power(-1), number.recip())
+        })
+    }
+
     /// The curve on which the mean stiffness is `eigenvalue`.
     fn solved(&self, eigenvalue: &Polynomial, tongue: usize) -> Polynomial {
         match self.hill.unknown {
-            Unknown::Stiffness(_) => eigenvalue.less(&self.hill.constant).scaled(&self.hill.factor.recip()),
+            Unknown::Stiffness { .. } => eigenvalue.less(&self.hill.constant).product(&self.inverse_factor()),
             Unknown::Frequency(name) => {
                 // constant = n^2 w/4 + rest(w): from the right side of the order before.
                 let scale = self.first_square(tongue);

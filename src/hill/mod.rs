@@ -65,8 +65,13 @@ impl Default for Options {
 /// What a curve gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unknown {
-    /// The mean stiffness, in this letter.
-    Stiffness(Symbol),
+    /// A power of a letter that stands in one term of the mean stiffness and nowhere else.
+    Stiffness {
+        /// The letter.
+        name: Symbol,
+        /// Its power there, not zero.
+        power: i32,
+    },
     /// The square of the frequency, whose letter this is.
     Frequency(Symbol),
 }
@@ -75,16 +80,21 @@ impl Unknown {
     /// The letter.
     pub fn symbol(self) -> Symbol {
         match self {
-            Self::Stiffness(name) | Self::Frequency(name) => name,
+            Self::Stiffness { name, .. } | Self::Frequency(name) => name,
         }
     }
 
-    /// What a curve gives: `delta`, `Omega^2`.
-    pub fn given(self) -> Polynomial {
+    /// The power of the letter that the curves give: 1 for `delta`, 2 for `Omega^2`.
+    pub fn power(self) -> i32 {
         match self {
-            Self::Stiffness(name) => Polynomial::symbol(name),
-            Self::Frequency(name) => Polynomial::term(Monomial::power_of(name, 2), Rational::one()),
+            Self::Stiffness { power, .. } => power,
+            Self::Frequency(_) => 2,
         }
+    }
+
+    /// The left side of a curve: `delta`, `Omega^2`.
+    pub fn given(self) -> Polynomial {
+        Polynomial::term(Monomial::power_of(self.symbol(), self.power()), Rational::one())
     }
 }
 
@@ -101,6 +111,9 @@ pub struct TransitionCurves {
     pub order: u32,
     /// The letters of the equation.
     pub parameters: Vec<Symbol>,
+    /// The letter W of the dimensionless time `tau = W*t` in which the coefficients below are written; `None` where they are
+    /// functions of the time of the equation.
+    pub time_scale: Option<Symbol>,
     /// The frequency of the coefficients.
     pub frequency: Frequency,
     /// `c(t)`.
@@ -121,13 +134,20 @@ impl TransitionCurves {
         })
     }
 
-    /// T, the period of the coefficients.
+    /// The frequency of the coefficients in the time of the equation.
+    pub fn driving_frequency(&self) -> Expr {
+        let frequency = Expr::from(&self.frequency.polynomial());
+        self.time_scale
+            .map_or(frequency.clone(), |name| &frequency * &Expr::from(name))
+    }
+
+    /// T, the period of the coefficients, in the time of the equation.
     ///
     /// # Errors
     /// An expression beyond all limits.
     pub fn period(&self) -> Result<Expr, ExprError> {
         let turn = &Expr::number(ratio(2, 1)) * &Expr::pi();
-        Expr::divide(&turn, &Expr::from(&self.frequency.polynomial()))
+        Expr::divide(&turn, &self.driving_frequency())
     }
 
     /// The names of what is small: `eps, zeta`.
@@ -182,6 +202,11 @@ pub enum HillError {
     /// A letter that cannot be solved for.
     #[error("`{0}` is neither a letter of the mean stiffness alone nor the frequency")]
     NotAnUnknown(String),
+    /// A frequency that stands in several coefficients also in the time that it scales.
+    #[error(
+        "the curves cannot be solved for `{0}`: with the time tau = {0}*t it still stands in several terms of the coefficients, {1}"
+    )]
+    InSeveralTerms(Symbol, String),
     /// A mean stiffness that is zero where the frequency is asked for.
     #[error("the mean stiffness is `{0}`, and the frequency can be found beside a single positive term alone")]
     Stiffness(String),
@@ -227,7 +252,9 @@ impl HillError {
             Self::NoUnknown => {
                 "write the equation with a letter, as in `x'' + (delta + eps*cos(2*t))*x` or with cos(Omega*t)"
             }
-            Self::SeveralUnknowns(_) | Self::NotAnUnknown(_) => "choose one with `--for NAME`",
+            Self::SeveralUnknowns(_) | Self::NotAnUnknown(_) | Self::InSeveralTerms(..) => {
+                "choose one with `--for NAME`"
+            }
             Self::Stiffness(_) => "choose a letter of the mean stiffness with `--for NAME`",
             Self::NumberIsSmall(_) => "write `eps*cos(2*t)` and give its number with `--at eps=0.2`",
             Self::SeveralSmall(_) | Self::UnknownSmall(_) | Self::NotSmall(..) => {
@@ -242,8 +269,8 @@ impl HillError {
 /// An equation taken apart.
 struct Hill {
     unknown: Unknown,
-    /// `r`, or zero where the frequency is unknown.
-    factor: Rational,
+    /// The term that stands before the unknown power in the mean stiffness; zero where the frequency is unknown.
+    factor: Polynomial,
     /// What of the mean stiffness is neither the unknown nor small.
     constant: Polynomial,
     small: Vec<Symbol>,
@@ -275,8 +302,13 @@ pub fn transition_curves(oscillator: &Oscillator, options: &Options) -> Result<T
     if options.order == 0 || options.order > HIGHEST_ORDER || options.tongues > MOST_TONGUES {
         return Err(HillError::Limits);
     }
-    let [damping, stiffness] = linear_coefficients(oscillator)?;
-    let hill = Hill::of(oscillator, [&damping, &stiffness], options)?;
+    let coefficients = linear_coefficients(oscillator)?;
+    let time_scale = time_scale(&coefficients, options.solve_for.as_deref());
+    let [damping, stiffness] = match time_scale {
+        None => coefficients,
+        Some(name) => in_scaled_time(&coefficients, name)?,
+    };
+    let hill = Hill::of(oscillator, [&damping, &stiffness], time_scale, options)?;
     let mut curves = Vec::new();
     for tongue in 0..=options.tongues {
         // Without the time no motion of the period 0 has a frequency.
@@ -291,6 +323,7 @@ pub fn transition_curves(oscillator: &Oscillator, options: &Options) -> Result<T
         small: hill.small,
         order: options.order,
         parameters: oscillator.parameters.clone(),
+        time_scale,
         frequency: hill.frequency,
         damping,
         stiffness,
@@ -328,6 +361,47 @@ fn linear_coefficients(oscillator: &Oscillator) -> Result<[Expr; 2], HillError> 
     Ok([damping, stiffness])
 }
 
+/// The letter W of the frequency of the waves if it stands in the coefficients as well, as in `amp*W^2*cos(W*t)`, and is what the
+/// curves are wanted for: the one asked for, or the only one there is.
+fn time_scale(coefficients: &[Expr; 2], asked: Option<&str>) -> Option<Symbol> {
+    let frequency = periodic::frequency(coefficients).ok()??;
+    let [(name, 1)] = frequency.unit.factors() else {
+        return None;
+    };
+    let mut series = Vec::new();
+    for coefficient in coefficients {
+        series.push(periodic::series(coefficient, &frequency).ok()?);
+    }
+    let stands = |polynomial: &Polynomial| polynomial.terms().any(|(monomial, _)| monomial.exponent(*name) != 0);
+    if !series.iter().flat_map(FourierSeries::numerators).any(stands) {
+        return None;
+    }
+    let is_wanted = match asked {
+        Some(asked) => asked == name.name(),
+        None => stiffness_letters(&series[1].constant_term()).next().is_none(),
+    };
+    is_wanted.then_some(*name)
+}
+
+/// The coefficients in the time `tau = W*t`, written `t` again: `c(t/W)/W` and `k(t/W)/W^2`.
+fn in_scaled_time([damping, stiffness]: &[Expr; 2], name: Symbol) -> Result<[Expr; 2], HillError> {
+    let unit = Expr::from(name);
+    let time = Expr::divide(&Expr::symbol("t"), &unit)?;
+    let scaled = |coefficient: &Expr, power: i64| -> Result<Expr, ExprError> {
+        let in_time = coefficient.substitute("t".into(), &time)?;
+        Expr::divide(&in_time, &unit.integer_power(power)?)?.expand()
+    };
+    Ok([scaled(damping, 1)?, scaled(stiffness, 2)?])
+}
+
+/// The letters that stand as a term of the mean stiffness by themselves.
+fn stiffness_letters(mean: &Polynomial) -> impl Iterator<Item = Symbol> {
+    mean.terms().filter_map(|(monomial, _)| match monomial.factors() {
+        [(name, 1)] => Some(*name),
+        _ => None,
+    })
+}
+
 /// The first typed term that answers to `is_meant`; else the term as it was understood.
 fn as_typed(oscillator: &Oscillator, is_meant: &dyn Fn(&Expr) -> bool, term: &Expr) -> String {
     match oscillator.typed.values().position(|value| is_meant(&value)) {
@@ -337,7 +411,12 @@ fn as_typed(oscillator: &Oscillator, is_meant: &dyn Fn(&Expr) -> bool, term: &Ex
 }
 
 impl Hill {
-    fn of(oscillator: &Oscillator, [damping, stiffness]: [&Expr; 2], options: &Options) -> Result<Self, HillError> {
+    fn of(
+        oscillator: &Oscillator,
+        [damping, stiffness]: [&Expr; 2],
+        time_scale: Option<Symbol>,
+        options: &Options,
+    ) -> Result<Self, HillError> {
         let not_periodic = |part: Expr| {
             let meant = |typed: &Expr| typed.unique_nodes().any(|node| *node == part);
             let whole = as_typed(oscillator, &meant, &part);
@@ -360,7 +439,11 @@ impl Hill {
         }
         let (frequency, [damping, stiffness]) = periodic::in_lowest_terms(frequency, [damping, stiffness]);
         let mean = stiffness.constant_term();
-        let unknown = unknown(&mean, [&damping, &stiffness], &frequency, options.solve_for.as_deref())?;
+        let asked = time_scale.map(Symbol::name).or(options.solve_for.as_deref());
+        let unknown = unknown(&mean, [&damping, &stiffness], &frequency, asked).map_err(|error| match time_scale {
+            Some(name) => HillError::InSeveralTerms(name, terms_with(name, [&damping, &stiffness])),
+            None => error,
+        })?;
         let small = small(oscillator, [&damping, &stiffness], &frequency, options)?;
         let degree = |monomial: &Monomial| {
             small
@@ -368,10 +451,12 @@ impl Hill {
                 .map(|name| i64::from(monomial.exponent(*name)))
                 .sum::<i64>()
         };
-        let (mut constant, mut factor) = (Polynomial::zero(), Rational::zero());
+        let (mut constant, mut factor) = (Polynomial::zero(), Polynomial::zero());
         for (monomial, number) in mean.terms() {
             match unknown {
-                Unknown::Stiffness(name) if monomial.exponent(name) == 1 => factor = number.clone(),
+                Unknown::Stiffness { name, .. } if monomial.exponent(name) != 0 && degree(monomial) == 0 => {
+                    factor = Polynomial::term(monomial.without(name), number.clone());
+                }
                 _ if degree(monomial) == 0 => constant.add_term(monomial.clone(), number.clone()),
                 _ => {}
             }
@@ -382,7 +467,7 @@ impl Hill {
         if matches!(unknown, Unknown::Frequency(_)) && !positive {
             return Err(HillError::Stiffness(constant.to_string()));
         }
-        let kept = Polynomial::term(Monomial::power_of(unknown.symbol(), 1), factor.clone());
+        let kept = unknown.given().product(&factor);
         let kept =
             FourierSeries::constant(POLYNOMIALS, constant.clone()).sum(&FourierSeries::constant(POLYNOMIALS, kept));
         let varying = stiffness.difference(&kept);
@@ -442,34 +527,45 @@ fn unknown(
     }
     let alone =
         |name: &Symbol| seen.get(name) == Some(&1) && frequency.unit.exponent(*name) == 0 && name.name() != "pi";
-    let candidates: Vec<Symbol> = mean
-        .terms()
-        .filter_map(|(monomial, _)| match monomial.factors() {
-            [(name, 1)] => Some(*name),
-            _ => None,
-        })
-        .filter(alone)
-        .collect();
+    let candidates: Vec<Symbol> = stiffness_letters(mean).filter(alone).collect();
     let driving = match frequency.unit.factors() {
         [(name, 1)] if !seen.contains_key(name) => Some(*name),
         _ => None,
     };
     if let Some(asked) = asked {
         let name = Symbol::new(asked);
-        return match (candidates.contains(&name), driving) {
-            (true, _) => Ok(Unknown::Stiffness(name)),
-            (false, Some(frequency)) if frequency == name => Ok(Unknown::Frequency(name)),
+        let power = mean
+            .terms()
+            .map(|(monomial, _)| monomial.exponent(name))
+            .find(|power| *power != 0);
+        return match (power.filter(|_| alone(&name)), driving) {
+            (Some(power), _) => Ok(Unknown::Stiffness { name, power }),
+            (None, Some(frequency)) if frequency == name => Ok(Unknown::Frequency(name)),
             _ => Err(HillError::NotAnUnknown(asked.to_owned())),
         };
     }
     let delta = Symbol::new("delta");
     match (candidates.as_slice(), driving) {
-        ([only], _) => Ok(Unknown::Stiffness(*only)),
-        (several, _) if several.contains(&delta) => Ok(Unknown::Stiffness(delta)),
+        ([only], _) => Ok(Unknown::Stiffness { name: *only, power: 1 }),
+        (several, _) if several.contains(&delta) => Ok(Unknown::Stiffness { name: delta, power: 1 }),
         ([], Some(frequency)) => Ok(Unknown::Frequency(frequency)),
         ([], None) => Err(HillError::NoUnknown),
         (several, _) => Err(HillError::SeveralUnknowns(listed(several))),
     }
+}
+
+/// The terms of the coefficients in which a letter stands: `c/W`, `g/(l*W^2)`.
+fn terms_with(name: Symbol, coefficients: [&FourierSeries<Polynomials>; 2]) -> String {
+    let terms = coefficients
+        .into_iter()
+        .flat_map(FourierSeries::numerators)
+        .flat_map(Polynomial::terms);
+    let mut terms: Vec<String> = terms
+        .filter(|(monomial, _)| monomial.exponent(name) != 0)
+        .map(|(monomial, number)| format!("`{}`", Expr::from(&Polynomial::term(monomial.clone(), number.clone()))))
+        .collect();
+    terms.dedup();
+    terms.join(", ")
 }
 
 fn listed(names: &[Symbol]) -> String {
@@ -536,11 +632,17 @@ fn small(
             small.insert(*only);
         }
     }
-    if let Some((letters, _)) = terms
-        .iter()
-        .find(|(letters, _)| !letters.iter().any(|name| small.contains(name)))
-    {
-        return Err(HillError::SeveralSmall(listed(letters)));
+    // Of `amp/l` beside the mean stiffness `g/l` only the amplitude can vanish alone.
+    let mean = stiffness.constant_term();
+    let in_mean = |name: &Symbol| mean.terms().any(|(monomial, _)| monomial.exponent(*name) != 0);
+    for (letters, _) in &terms {
+        if !letters.iter().any(|name| small.contains(name)) {
+            let mut of_waves_alone = letters.iter().filter(|name| !in_mean(name));
+            match (of_waves_alone.next(), of_waves_alone.next()) {
+                (Some(only), None) => small.insert(*only),
+                _ => return Err(HillError::SeveralSmall(listed(letters))),
+            };
+        }
     }
     Ok(small.into_iter().collect())
 }

@@ -192,11 +192,17 @@ fn formula(curves: &TransitionCurves, curve: &TransitionCurve, numbers: &BTreeMa
         Some(root) => root.evaluate(value_of).ok()?.sqrt(),
     };
     let value = if curve.upper { middle + root } else { middle - root };
-    let value = match curves.unknown {
-        Unknown::Stiffness(_) => value,
-        Unknown::Frequency(_) => value.sqrt(),
-    };
-    value.is_finite().then_some(value)
+    letter_of_power(value, curves.unknown.power()).filter(|value| value.is_finite())
+}
+
+/// The letter whose power this is, positive where it has two signs; `None` where it is not real.
+fn letter_of_power(value: f64, power: i32) -> Option<f64> {
+    match power {
+        1 => Some(value),
+        2 => Some(value.sqrt()),
+        _ if power % 2 == 0 && value < 0.0 => None,
+        _ => Some(value.signum() * value.abs().powf(1.0 / f64::from(power))),
+    }
 }
 
 /// Whether a curve is the upper one of its pair at the numbers: where what is small is negative, two of them change places.
@@ -225,19 +231,35 @@ fn true_value(
         numbers
     };
     let value = match curves.unknown {
-        Unknown::Stiffness(_) => {
-            // mu = r*delta
+        Unknown::Stiffness { power, .. } => {
             let slope = curves.stiffness.differentiate(unknown).ok();
-            let slope = slope
-                .and_then(|slope| slope.evaluate(&with(0.0)).ok())
-                .ok_or(TruthError::Coefficients)?;
-            let above = is_upper(curves, curve, numbers) == (slope > 0.0);
-            let coefficients = Coefficients::of(curves, &with(0.0))?;
-            let mu = coefficients.eigenvalue(curve, above)?;
-            // What is nothing but rounding is zero.
-            let rounding = ROUNDING * coefficients.frequency.powi(2);
-            let mu = mu.is_real.then_some(mu.value);
-            mu.map(|mu| if mu.abs() < rounding { 0.0 } else { mu / slope })
+            let slope = slope.ok_or(TruthError::Coefficients)?;
+            // The equation without the unknown, where its power is one; else beside the formula, and once more at what comes of it.
+            let mut reference = match power {
+                1 => 0.0,
+                _ => formula(curves, curve, numbers)
+                    .filter(|value| *value != 0.0)
+                    .unwrap_or(1.0),
+            };
+            let mut value = None;
+            for _ in 0..if power == 1 { 1 } else { 3 } {
+                // mu = r*(u - u_0) for the power u of the letter, that of the reference being u_0.
+                let by_letter = slope.evaluate(&with(reference)).map_err(|_| TruthError::Coefficients)?;
+                let slope = by_letter / (f64::from(power) * reference.powi(power - 1));
+                let above = is_upper(curves, curve, numbers) == (slope > 0.0);
+                let coefficients = Coefficients::of(curves, &with(reference))?;
+                let mu = coefficients.eigenvalue(curve, above)?;
+                // What is nothing but rounding is zero.
+                let rounding = ROUNDING * coefficients.frequency.powi(2);
+                let mu = mu.is_real.then_some(mu.value);
+                let mu = mu.map(|mu| if mu.abs() < rounding { 0.0 } else { mu / slope });
+                value =
+                    mu.and_then(|mu| letter_of_power(mu + if power == 1 { 0.0 } else { reference.powi(power) }, power));
+                value = value.filter(|value| value.is_finite());
+                let Some(better) = value else { break };
+                reference = better;
+            }
+            value
         }
         Unknown::Frequency(_) => frequency_without_remainder(curves, curve, &with)?,
     };

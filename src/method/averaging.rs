@@ -554,7 +554,7 @@ impl Projected {
 
     /// The motion, its velocity and the small terms, as lines of a derivation.
     fn along(&self, oscillator: &Oscillator, amplitude: &Expr, letters: &Letters) -> Result<Vec<Line>, ExprError> {
-        let theta = Expr::symbol("theta");
+        let theta = Expr::from(oscillator.phase());
         Ok(vec![
             Line::equation(Expr::from(oscillator.coordinate), amplitude * &theta.cos()?).because("along"),
             Line::equation(

@@ -63,13 +63,13 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     set_law(&mut solution, &law)?;
     let names = oscillator.names();
     let mean_name = fresh("V_mean", &names);
-    let along = amplitude.clone() * Expr::symbol("theta").cos()?;
+    let along = amplitude.clone() * Expr::from(oscillator.phase()).cos()?;
     let integral = Formula::Integral {
         factor: Expr::divide(&Expr::one(), &Expr::pi())?,
         from: Expr::zero(),
         to: Expr::pi(),
         integrand: Box::new(potential.substitute(oscillator.coordinate, &along)?.into()),
-        variable: "theta".into(),
+        variable: oscillator.phase(),
     };
     let slope = Formula::Slope {
         factor: Expr::divide(&Expr::from(2), &amplitude)?,

@@ -119,8 +119,8 @@ fn projections(
             factor: Expr::divide(&Expr::from(factor), &Expr::pi())?,
             from: Expr::zero(),
             to: Expr::pi(),
-            integrand: Box::new((force * &(&k * &Expr::symbol("theta")).cos()?).into()),
-            variable: "theta".into(),
+            integrand: Box::new((force * &(&k * &Expr::from(oscillator.phase())).cos()?).into()),
+            variable: oscillator.phase(),
         };
         Ok(Line::equation(k.integer_power(2)? * &omega * name, integral))
     };

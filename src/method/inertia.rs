@@ -428,7 +428,10 @@ fn hamiltonian(moving: &VariableMass, oscillator: &Oscillator, options: &Options
             set_law(&mut solution, &law)?;
         }
         None => {
-            let (cosine, sine) = (Expr::symbol("theta").cos()?, Expr::symbol("theta").sin()?);
+            let (cosine, sine) = (
+                Expr::from(oscillator.phase()).cos()?,
+                Expr::from(oscillator.phase()).sin()?,
+            );
             let along = &amplitude * &cosine;
             let mass = match &moving.mass {
                 Some(mass) => mass.substitute(x, &along)?,
@@ -443,7 +446,7 @@ fn hamiltonian(moving: &VariableMass, oscillator: &Oscillator, options: &Options
                 from: Expr::zero(),
                 to: Expr::pi(),
                 integrand: Box::new(integrand.into()),
-                variable: "theta".into(),
+                variable: oscillator.phase(),
             };
             let bracket = &amplitude * &cosine.integer_power(2)?
                 - amplitude.integer_power(2)? * growth * sine.integer_power(2)? * &cosine;
@@ -597,8 +600,8 @@ fn projections(oscillator: &Oscillator, harmonics: &[usize], names: &[Symbol]) -
         factor: Expr::one(),
         from: Expr::zero(),
         to: Expr::pi(),
-        integrand: Box::new((&oscillator.residual * &(Expr::from(k) * Expr::symbol("theta")).cos()?).into()),
-        variable: "theta".into(),
+        integrand: Box::new((&oscillator.residual * &(Expr::from(k) * Expr::from(oscillator.phase())).cos()?).into()),
+        variable: oscillator.phase(),
     };
     let line = Line::equal([projection, Expr::zero().into()]);
     let mut lines = vec![line.because(format!("for {k} = {}", kept.join(", ")))];

@@ -237,7 +237,7 @@ pub(super) fn numbered(oscillator: &Oscillator, number: u32) -> Symbol {
 /// The first pass of a force that is no polynomial.
 fn frozen_function(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Line>, Refusal> {
     let [start, first] = [0, 1].map(|number| numbered(oscillator, number));
-    let along = Expr::symbol("A") * Expr::symbol("theta").cos()?;
+    let along = Expr::symbol("A") * Expr::from(oscillator.phase()).cos()?;
     let factor = Expr::divide(force, &oscillator.coordinate.into())?;
     let frozen = factor.substitute(oscillator.coordinate, &along)?;
     let squared = Expr::symbol("omega").integer_power(2)?;

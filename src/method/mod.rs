@@ -63,7 +63,7 @@ use table::{Choice, Entry, that_take};
 
 use crate::equilibrium::{Centred, centred, stable_elsewhere};
 use crate::exact::{POLYNOMIALS, Polynomial};
-use crate::expr::{Expr, ExprError, Quotation};
+use crate::expr::{Expr, ExprError, NAMES_OF_ANSWERS, Quotation};
 use crate::interrupt::Supervision;
 use crate::oscillator::corner::near_rest;
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
@@ -122,6 +122,9 @@ pub enum Refusal {
     /// The equation is no oscillator, or cannot be expanded.
     #[error(transparent)]
     Oscillator(#[from] OscillatorError),
+    /// A parameter with the name of something in the answer.
+    #[error("the parameter `{0}` has the name of the amplitude or the frequency in the answer")]
+    NameOfAnswer(Symbol),
     /// The method is not for this equation, or not for what was asked of it.
     #[error("{refuser} {reason}")]
     Unsuited {
@@ -570,6 +573,7 @@ impl Refusal {
                     .choose(small)
                     .then("`, and write a polynomial such as x - eps*x^3/6 for sin(x)")
             }
+            Self::NameOfAnswer(name) => Advice::words(format!("give it another name, such as `{name}1`")),
             Self::NoLimitCycle { .. } => {
                 Advice::words("energy is fed at every amplitude or drained at every amplitude: no motion repeats; try ")
                     .choose(Setting::Method(Method::Averaging))
@@ -604,7 +608,24 @@ impl Refusal {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
-    solve_as_asked(oscillator, options).map_err(|refusal| without_linear_force(refusal, oscillator, options))
+    if let Some(name) = oscillator
+        .parameters
+        .iter()
+        .find(|name| NAMES_OF_ANSWERS.contains(&name.name()))
+    {
+        return Err(Refusal::NameOfAnswer(*name));
+    }
+    let solution =
+        solve_as_asked(oscillator, options).map_err(|refusal| without_linear_force(refusal, oscillator, options))?;
+    let phase = oscillator.phase();
+    Ok(Solution {
+        derivation: solution
+            .derivation
+            .into_iter()
+            .map(|line| line.with_phase(phase))
+            .collect(),
+        ..solution
+    })
 }
 
 /// Where `x = 0` pushes away the stable equilibria are named. Methods that need no linear force take no damping and no drive: where there is one the way leads on to numbers.

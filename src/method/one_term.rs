@@ -186,14 +186,14 @@ pub(super) fn note_even_part_last(solution: &mut Solution) {
 
 /// `(2/(pi A)) int_0^pi f(A cos theta) cos(theta) dtheta`, written out.
 pub(super) fn first_projection(oscillator: &Oscillator, force: &Expr) -> Result<Formula, ExprError> {
-    let (amplitude, cosine) = (Expr::symbol("A"), Expr::symbol("theta").cos()?);
+    let (amplitude, cosine) = (Expr::symbol("A"), Expr::from(oscillator.phase()).cos()?);
     let along = force.substitute(oscillator.coordinate, &(&amplitude * &cosine))?;
     Ok(Formula::Integral {
         factor: Expr::divide(&Expr::from(2), &(Expr::pi() * amplitude))?,
         from: Expr::zero(),
         to: Expr::pi(),
         integrand: Box::new((along * cosine).into()),
-        variable: "theta".into(),
+        variable: oscillator.phase(),
     })
 }
 

@@ -44,7 +44,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     if order <= 1 && options.taylor.is_none() {
         let mut solution = solve_by_integral(oscillator, options, METHOD)?;
         let omega = Expr::symbol("omega").integer_power(2)?;
-        let along = Expr::symbol("A") * Expr::symbol("theta").cos()?;
+        let along = Expr::symbol("A") * Expr::from(oscillator.phase()).cos()?;
         let driven = &omega * &along - oscillator.force.substitute(oscillator.coordinate, &along)?;
         let [start, first] = [0, 1].map(|number| numbered(oscillator, number));
         let names = oscillator.names();

@@ -66,7 +66,7 @@ impl MechanismFileError {
             }
             Self::Coordinate { .. } => Some(
                 "to hand an equation on, name the coordinate by a letter (Greek ones by name, such as phi) and its parameters by other \
-                 names than A, a, theta and omega; `lindstedt lagrange` takes any"
+                 names than A, a and omega; `lindstedt lagrange` takes any"
                     .to_owned(),
             ),
             _ => None,

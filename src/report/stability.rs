@@ -102,6 +102,9 @@ fn validity<'a>(curves: &TransitionCurves) -> Vec<Block<'a>> {
             curves.small_in_words()
         )),
     ];
+    if let Some(name) = curves.time_scale {
+        blocks.push(Block::Note(format!("derived in the dimensionless time tau = {name}*t")));
+    }
     for pair in curves.curves.windows(2) {
         let same = pair[0].tongue == pair[1].tongue && pair[0].middle == pair[1].middle;
         if same && pair[0].under_root.is_none() {
@@ -161,9 +164,13 @@ fn verdicts<'a>(report: &StabilityReport<'a>, at: &'a Values, judged: &[JudgedCu
             head: head.map(|(text, latex)| Heading { text, latex }).to_vec(),
             rows: judged.iter().map(row).collect(),
         },
-        Block::Note(
-            "true: by Hill's determinant, confirmed by Floquet's multipliers of the integrated motion; none: the tongue does not reach so far"
-                .to_owned(),
-        ),
+        Block::Note(format!(
+            "true: by Hill's determinant, confirmed by Floquet's multipliers of the integrated motion; none: {}",
+            match report.curves.unknown.power() {
+                power if power % 2 == 0 && report.curves.time_scale.is_some() =>
+                    format!("no real {} lies on the curve there", report.curves.unknown.symbol()),
+                _ => "the tongue does not reach so far".to_owned(),
+            }
+        )),
     ]
 }

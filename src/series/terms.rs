@@ -5,11 +5,12 @@ use num_traits::Zero;
 use super::FourierSeries;
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Polynomials, Rational};
+use crate::symbol::Symbol;
 
 /// How a format writes a harmonic.
 pub struct Notation {
-    /// `cos(3*theta)` from `"cos"` and 3; never asked for the zeroth harmonic.
-    pub wave: fn(&str, usize) -> String,
+    /// `cos(3*theta)` from `"cos"`, 3 and the name of the phase; never asked for the zeroth harmonic.
+    pub wave: fn(&str, usize, Symbol) -> String,
     /// What stands between coefficient and harmonic.
     pub times: &'static str,
     /// What stands around a coefficient that is a sum.
@@ -41,6 +42,7 @@ pub fn waves(
     series: &FourierSeries<Polynomials>,
     law: impl Fn(&Polynomial) -> String,
     notation: &Notation,
+    phase: Symbol,
 ) -> Vec<String> {
     let mut waves = Vec::new();
     for (k, cosine, sine) in series.harmonics() {
@@ -53,7 +55,7 @@ pub fn waves(
                 waves.push(text);
                 continue;
             }
-            let wave = (notation.wave)(function, k);
+            let wave = (notation.wave)(function, k, phase);
             let [open, close] = notation.brackets;
             waves.push(match (coefficient.single_term().is_some(), text.as_str()) {
                 (true, "1") => wave,

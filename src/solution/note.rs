@@ -17,6 +17,20 @@ pub enum Note {
     FirstStep(FirstStep),
     /// A one-term motion whose equation is met at one instant.
     Collocated(Instant),
+    /// A parameter that is written with another name than the one typed, which the answer uses for something else.
+    Renamed {
+        /// The name in the equation as it was typed.
+        typed: Symbol,
+        /// The name in the answer.
+        written: Symbol,
+    },
+    /// A parameter whose name looks like something else.
+    Misleading {
+        /// The parameter.
+        name: Symbol,
+        /// How that would be written.
+        instead: String,
+    },
     /// The slope of the force at half the amplitude.
     SlopeAtHalf,
     /// The part of the force that a motion of one term leaves out.
@@ -430,6 +444,14 @@ impl fmt::Display for Note {
         match self {
             Self::FirstStep(step) => step.fmt(formatter),
             Self::Collocated(instant) => instant.fmt(formatter),
+            Self::Renamed { typed, written } => {
+                let meaning = if typed.name() == "omega" { "frequency" } else { "amplitude" };
+                write!(
+                    formatter,
+                    "the parameter {typed} of the equation is written {written}: {typed} is the {meaning} in the answer"
+                )
+            }
+            Self::Misleading { name, instead } => write!(formatter, "{name} is read as a parameter; {instead}"),
             Self::EvenPartLeftOut(even) => even_part(formatter, even),
             Self::Cut(cut) => cut.fmt(formatter),
             Self::MotionAtLeadingOrder { small } => write!(

@@ -47,6 +47,7 @@ use crate::conservative::features::Features;
 use crate::conservative::force::Force;
 use crate::decimal::{decimal, significant};
 use crate::exact::Doubles;
+use crate::exact::rational::from_f64;
 use crate::expr::{EvaluationError, Expr, ExprError};
 use crate::method::numbers::{
     Known, NoNumbers, Numbers, evaluate, frequency_squared_along, half_a_period, law_name, symbol_values,
@@ -345,6 +346,12 @@ pub(crate) fn judge_to(
     if let Some(moving) = off_cycle(solution, at) {
         return judge_to(oscillator, &moving, at, tolerance, extent);
     }
+    if let Some((converted, in_words)) = in_convention_of(oscillator, solution, at)? {
+        let mut judged = judge_to(oscillator, solution, &converted, tolerance, extent)?;
+        let text = in_words;
+        judged.ranges.insert(0, validity::Range { text, outside: false });
+        return Ok(judged);
+    }
     let settled = on_cycle(solution, at);
     if let (Some(slow), None) = (solution.slow(), &settled) {
         let numbers = checked_numbers(solution, at)?;
@@ -428,6 +435,54 @@ fn in_another_coordinate(
         true => Ok(None),
         false => Ok(Some(Oscillator::from_equation(&solution.equation)?)),
     }
+}
+
+/// The values with the amplitude that the formula is written in, where that of the other convention is given instead, and what was
+/// converted in words: the true motion released at `A` has the first harmonic `a`. `None` where there is nothing to convert.
+///
+/// # Errors
+/// No true periodic motion of the amplitude given.
+fn in_convention_of(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    at: &Values,
+) -> Result<Option<(Values, String)>, VerificationError> {
+    let [wanted, given] = [solution.amplitude, solution.amplitude.other()];
+    let free = solution.limit_cycle.is_none() && solution.slow().is_none();
+    let Some(size) = at
+        .get(given.symbol())
+        .filter(|size| free && *size != 0.0 && at.get(wanted.symbol()).is_none())
+    else {
+        return Ok(None);
+    };
+    let numbers = at.with(given.symbol(), size);
+    if solution.parameters.iter().any(|name| !numbers.contains_key(name)) {
+        return Ok(None);
+    }
+    let meant = Meant {
+        convention: given,
+        ..meant(oscillator, solution, &numbers)
+    };
+    let equilibrium = solution.equilibrium.evaluate(&numbers)?;
+    let motion = TrueMotion::of(oscillator, &meant, &numbers)?;
+    let Some(converted) = motion.amplitude_by_the_other(given, equilibrium) else {
+        return Ok(None);
+    };
+    let (_, mut values) = at.split(&[given.symbol()]);
+    let exact = from_f64(converted).ok_or(VerificationError::NoPath)?;
+    // A number is a value for any name.
+    let _ = values.insert(wanted.symbol(), Expr::number(exact));
+    let (release, harmonic) = match given {
+        AmplitudeConvention::Initial => (size, converted),
+        AmplitudeConvention::FirstHarmonic => (converted, size),
+    };
+    let in_words = format!(
+        "the true motion released from rest at A = {} has the first harmonic a = {}; the formula is written in {}",
+        decimal(release),
+        decimal(harmonic),
+        wanted.symbol()
+    );
+    Ok(Some((values, in_words)))
 }
 
 /// An error where the amplitude of a free motion changes.

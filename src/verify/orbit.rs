@@ -165,6 +165,16 @@ impl TrueMotion {
         }
     }
 
+    /// The amplitude of this free motion by the other convention: of a release the first harmonic, of a first harmonic the release;
+    /// `None` where its path is not known.
+    pub(super) fn amplitude_by_the_other(&self, convention: AmplitudeConvention, equilibrium: f64) -> Option<f64> {
+        let orbit = self.orbit.as_ref()?;
+        Some(match convention {
+            AmplitudeConvention::Initial => first_harmonic(orbit).0,
+            AmplitudeConvention::FirstHarmonic => orbit.at(0.0).0 - equilibrium,
+        })
+    }
+
     /// Whether its path is known, not only its frequency.
     pub(super) fn has_path(&self) -> bool {
         self.orbit.is_some()

@@ -150,7 +150,7 @@ impl SlowMotion {
     ) -> Result<Self, VerificationError> {
         let equilibrium = solution.equilibrium.evaluate(numbers)?;
         let numbers = Numbers::of(solution, modulation, numbers)?;
-        let (a, theta) = (modulation.amplitude, Symbol::new("theta"));
+        let (a, theta) = (modulation.amplitude, solution.phase());
         let place = numbers.put(&displacement(solution, theta)?)?;
         let rates = [
             numbers.put(&modulation.amplitude_rate)?,

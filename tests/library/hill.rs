@@ -324,3 +324,52 @@ fn tongues_are_counted_by_the_shortest_period_and_open_at_their_order() {
         );
     }
 }
+
+/// With tau = W t the equation is Mathieu's with delta = -g/(l W^2) and eps = amp/l: the curves are the same ones, exactly.
+#[test]
+fn a_frequency_that_scales_the_time_is_solved_for() {
+    let scaled = curves("x'' + (-g/l + amp*W^2/l*cos(W*t))*x = 0", 6, 3);
+    assert_eq!(scaled.unknown.given().to_string(), "W^-2");
+    assert_eq!(scaled.small, [Symbol::new("amp")]);
+    let mathieu = curves("x'' + (delta + eps*cos(t))*x = 0", 6, 3);
+    let numbers = |name: Symbol| match name.name() {
+        "g" => Some(9.81),
+        "l" => Some(0.7),
+        "amp" => Some(0.21),
+        "eps" => Some(0.3),
+        _ => None,
+    };
+    for curve in &scaled.curves {
+        let delta = named(&mathieu, &curve.name).evaluate(numbers).expect("a value");
+        let value = curve.middle.evaluate(numbers).expect("a value");
+        assert!(
+            (-9.81 / 0.7 * value - delta).abs() < 1e-12,
+            "{}: {value}, {delta}",
+            curve.name
+        );
+    }
+    // The pendulum that stands on its head, P. L. Kapitza: W^2 > 2 g l/amp^2 for a small amplitude.
+    let judged = judge(&scaled, &values(&[("g", 9.81), ("l", 1.0), ("amp", 0.1)]), 1e-6).expect("a verdict");
+    assert!(judged.iter().all(|curve| curve.passes));
+    let least = judged[0].truth.expect("a frequency");
+    assert!((least / (2.0 * 9.81_f64).sqrt() * 0.1 - 1.0).abs() < 0.01, "{least}");
+    assert!(judged[1].truth.is_none());
+    // Hanging down it is unstable between two frequencies near 2 sqrt(g/l).
+    let hanging = curves("x'' + (g/l + amp*W^2/l*cos(W*t))*x = 0", 6, 3);
+    let judged = judge(&hanging, &values(&[("g", 9.81), ("l", 1.0), ("amp", 0.1)]), 1e-6).expect("a verdict");
+    assert!(judged.iter().all(|curve| curve.passes));
+    let tongue: Vec<f64> = judged[1..3].iter().filter_map(|curve| curve.truth).collect();
+    let twice = 2.0 * 9.81_f64.sqrt();
+    assert!(tongue[0] > twice && tongue[1] < twice, "{tongue:?}");
+}
+
+#[test]
+fn a_frequency_in_several_terms_is_no_unknown() {
+    let oscillator = Oscillator::parse("x'' + c*x' + (-g/l + amp*W^2/l*cos(W*t))*x = 0").expect("an oscillator");
+    let options = Options {
+        solve_for: Some("W".to_owned()),
+        ..Options::default()
+    };
+    let error = transition_curves(&oscillator, &options).expect_err("a refusal");
+    assert!(matches!(error, HillError::InSeveralTerms(..)), "{error}");
+}

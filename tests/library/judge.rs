@@ -7,7 +7,7 @@ use lindstedt::Values;
 use lindstedt::expr::Expr;
 use lindstedt::method::{Options, solve};
 use lindstedt::numeric::period::PeriodError;
-use lindstedt::solution::Method;
+use lindstedt::solution::{AmplitudeConvention, Method};
 use lindstedt::verify::Reach;
 use lindstedt::verify::comparison::{Comparison, backbones, compare};
 use lindstedt::verify::{Verdict, Verification, VerificationError, judge};
@@ -806,4 +806,47 @@ fn a_verdict_says_what_it_is_reached_on() {
     assert_eq!(dry, "pass: frequency within 1 %, amplitude within 1 %");
     let small = words("x'' + x + x^3 = 0", Method::HarmonicBalance, "A = 1/10");
     assert_eq!(small, "pass (|relative error| <= 1 %)");
+}
+
+/// First harmonic of `A cn`: `A 2 pi/(k K) sqrt(q)/(1 + q)`, `q = exp(-pi K'/K)` (Abramowitz and Stegun, 16.23.2); Duffing's motion has
+/// `k^2 = eps A^2/(2 (1 + eps A^2))`.
+#[test]
+fn an_amplitude_of_the_other_convention_is_converted() {
+    let (amplitude, eps) = (1.5_f64, 0.5_f64);
+    let m = eps * amplitude.powi(2) / (2.0 * (1.0 + eps * amplitude.powi(2)));
+    let [quarter, other] = [m, 1.0 - m].map(|m| ellip::ellipk(m).expect("below one"));
+    let q = (-std::f64::consts::PI * other / quarter).exp();
+    let first = amplitude * std::f64::consts::TAU / (m.sqrt() * quarter) * q.sqrt() / (1.0 + q);
+    let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0").expect("an equation");
+    for (convention, given, wanted, expected) in [
+        (AmplitudeConvention::FirstHarmonic, ("A", amplitude), "a", first),
+        (AmplitudeConvention::Initial, ("a", first), "A", amplitude),
+    ] {
+        let options = Options {
+            amplitude: Some(convention),
+            ..Options::default()
+        };
+        let solution = solve(&duffing, &options).expect("a law");
+        let at = values(&[("eps", "1/2"), (given.0, &given.1.to_string())]);
+        let judged = judge(&duffing, &solution, &at, 0.05).expect("a verdict");
+        let converted = judged
+            .at
+            .get(Symbol::new(wanted))
+            .expect("the amplitude of the formula");
+        assert!(
+            (converted / expected - 1.0).abs() < 1e-9,
+            "{wanted}: {converted}, {expected}"
+        );
+        let truth = std::f64::consts::FRAC_PI_2 * (1.0 + eps * amplitude.powi(2)).sqrt() / quarter;
+        assert!(
+            (judged.true_frequency / truth - 1.0).abs() < 1e-9,
+            "{}",
+            judged.true_frequency
+        );
+        assert!(
+            texts(&judged).contains("has the first harmonic a = "),
+            "{}",
+            texts(&judged)
+        );
+    }
 }

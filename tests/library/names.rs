@@ -9,9 +9,9 @@ use lindstedt::solution::Method;
 use lindstedt::{Oscillator, Solution, Symbol};
 
 /// Every name that some answer introduces, and some that look like them.
-const NAMES: [&str; 31] = [
+const NAMES: [&str; 33] = [
     "hbar", "hbar_", "W1", "W2", "y0", "y1", "y2", "w0", "w1", "w_0", "c1", "c2", "c3", "c_1", "a0", "a1", "a3", "b1",
-    "z", "p", "q", "x0", "x1", "omega0", "chi", "u_1", "u1", "s", "k", "V", "T",
+    "z", "p", "q", "x0", "x1", "omega0", "chi", "u_1", "u1", "s", "k", "V", "T", "theta", "phi",
 ];
 
 const EQUATIONS: [&str; 4] = [
@@ -353,4 +353,65 @@ fn a_greek_coordinate_is_set_as_its_letter() {
     // A comment is plain text.
     let set: String = document.lines().filter(|line| !line.starts_with('%')).collect();
     assert_eq!(set.replace("\\phi", "").matches("phi").count(), 0, "{document}");
+}
+
+/// The phase of the answer gives way to a coordinate of the same name; nothing else changes.
+#[test]
+fn a_coordinate_may_be_called_theta() {
+    for method in Method::ALL {
+        let derived = |equation: &str| {
+            let oscillator = Oscillator::parse(equation).expect("an equation");
+            let options = Options {
+                method: Some(method),
+                ..Options::default()
+            };
+            solve(&oscillator, &options).ok()
+        };
+        let (Some(plain), Some(named)) = (derived("x'' + k*sin(x) = 0"), derived("theta'' + k*sin(theta) = 0")) else {
+            assert!(derived("x'' + k*sin(x) = 0").is_none() && derived("theta'' + k*sin(theta) = 0").is_none());
+            continue;
+        };
+        let text = |solution: &Solution| text::steps(solution) + &text::solution(solution, None, 0.01);
+        // First the phase, then the coordinate: the other order would make them one.
+        let expected = words_replaced(&text(&plain), "theta", "phi");
+        let expected = words_replaced(&expected, "x", "theta");
+        assert_eq!(
+            words_replaced(&text(&named), "theta0", "x0"),
+            words_replaced(&expected, "theta0", "x0"),
+            "{}",
+            method.name()
+        );
+    }
+}
+
+/// A text with another word in the place of one.
+fn words_replaced(text: &str, word: &str, by: &str) -> String {
+    let is_letter = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
+    let mut replaced = String::new();
+    for part in text.split_inclusive(|letter| !is_letter(letter)) {
+        let name = part.trim_end_matches(|letter| !is_letter(letter));
+        replaced += &match name == word {
+            true => part.replacen(word, by, 1),
+            false => part.to_owned(),
+        };
+    }
+    replaced
+}
+
+/// Parameters called as the amplitude or the frequency of an answer are refused by the derivation, and taken under other names.
+#[test]
+fn parameters_with_names_of_answers_are_written_otherwise() {
+    let typed = Oscillator::parse("x'' + omega^2*x + a*x^3 = 0").expect("an equation");
+    assert!(solve(&typed, &Options::default()).is_err());
+    let (free, renamed) = typed.with_names_of_answers_free().expect("other names");
+    assert_eq!(renamed, [("a".into(), "a1".into()), ("omega".into(), "omega0".into())]);
+    let law = |oscillator: &Oscillator| {
+        let solution = solve(oscillator, &Options::default()).expect("a law");
+        solution.law.frequency_squared().expect("a polynomial").to_string()
+    };
+    let plain = Oscillator::parse("x'' + omega0^2*x + a1*x^3 = 0").expect("an equation");
+    assert_eq!(law(&free), law(&plain));
+    let driven = Oscillator::parse("x'' + x = A*cos(omega*t)").expect("an equation");
+    let (_, renamed) = driven.with_names_of_answers_free().expect("other names");
+    assert_eq!(renamed, [("A".into(), "A1".into()), ("omega".into(), "Omega".into())]);
 }

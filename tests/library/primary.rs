@@ -782,15 +782,27 @@ fn a_sweep_is_what_the_file_says_with_other_numbers() {
         (&[("mass_ratio", 50.0)], "mass = 0.3", "mass = 0.56"),
         (&[("stiffness", 60.0)], "stiffness = 40", "stiffness = 60"),
         (&[("primary.damping", 0.1)], "damping = 0.5", "damping = 0.1"),
-        (&[("displacement", -0.01)], "displacement = 0.02", "displacement = -0.01"),
+        (
+            &[("displacement", -0.01)],
+            "displacement = 0.02",
+            "displacement = -0.01",
+        ),
         (&[("barrier", 0.05)], "barrier = 0.2", "barrier = 0.05"),
         (&[("mu_over_gamma", 0.1)], "mu_over_gamma = 0.3", "mu_over_gamma = 0.1"),
         (&[("gamma", 1e5)], "[contact]", "[contact]\ngamma = 1e5"),
         (&[("alpha", 0.1)], "[run]", "[damping]\nalpha = 0.1\n[run]"),
         (&[("length", 0.1)], "[run]", "[design]\nlength = 0.1\n[run]"),
         (&[("design.mass", 0.02)], "[run]", "[design]\nmass = 0.02\n[run]"),
-        (&[("pendulum.speed", 0.3), ("start", -0.1)], "barrier = 0.2", "barrier = 0.2\nstart = -0.1\nspeed = 0.3"),
-        (&[("force", 0.2), ("frequency", 9.0)], "stiffness", "force = 0.2\nfrequency = 9\nstiffness"),
+        (
+            &[("pendulum.speed", 0.3), ("start", -0.1)],
+            "barrier = 0.2",
+            "barrier = 0.2\nstart = -0.1\nspeed = 0.3",
+        ),
+        (
+            &[("force", 0.2), ("frequency", 9.0)],
+            "stiffness",
+            "force = 0.2\nfrequency = 9\nstiffness",
+        ),
     ] {
         let typed: Problem = text.replace(from, to).parse().expect("a problem");
         let (own, other) = (followed(&file, varied), followed(&typed, &[]));

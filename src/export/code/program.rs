@@ -162,7 +162,7 @@ impl Names {
         Self {
             amplitude: solution.amplitude.symbol(),
             time: Symbol::new("t"),
-            theta: Symbol::new("theta"),
+            theta: solution.phase(),
             omega: Symbol::new("omega"),
             omega_squared: fresh("omega_squared", &taken),
             shape: fresh("shape", &taken),

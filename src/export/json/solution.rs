@@ -192,8 +192,8 @@ pub struct System {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Displacement {
-    /// The name of the angle: theta = omega t + `verification.phase`, in radians.
-    #[schemars(extend("const" = "theta"))]
+    /// The name of the angle, `theta`, or `phi` where the equation has a `theta` of its own: theta = omega t + `verification.phase`, in radians.
+    #[schemars(extend("pattern" = "^(theta|phi_*)$"))]
     pub variable: String,
     /// x = sum of cos * cos(harmonic theta) + sin * sin(harmonic theta), lowest harmonic first, the equilibrium in harmonic 0;
     /// empty where only `verification.motion` has the motion. Of a driven answer the part with the first harmonic: `response.motion` has
@@ -421,7 +421,7 @@ fn displacement(motion: &FourierSeries<Polynomials>, solution: &Solution) -> Dis
         sin: Polynomial::of(&sine, solution),
     };
     Displacement {
-        variable: "theta".to_owned(),
+        variable: solution.phase().to_string(),
         harmonics: motion.harmonics().into_iter().map(harmonic).collect(),
     }
 }

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use super::Kind;
 use super::number::{Constant, Map, Polynomial, finite};
 use crate::expr::Expr;
-use crate::hill::Unknown;
 use crate::report::StabilityReport;
 
 /// The curves on which a linear equation with periodic coefficients changes between stable and unstable.
@@ -108,15 +107,12 @@ pub fn stability(report: &StabilityReport) -> StabilityDocument {
     StabilityDocument {
         schema: Kind::Stability.schema().to_owned(),
         equation: curves.equation.to_string(),
-        gives: match curves.unknown {
-            Unknown::Stiffness(_) => unknown.clone(),
-            Unknown::Frequency(_) => format!("{unknown}^2"),
-        },
+        gives: Expr::from(&curves.unknown.given()).to_string(),
         unknown,
         order: curves.order,
         small_parameters: curves.small.iter().map(ToString::to_string).collect(),
         parameters: curves.parameters.iter().map(ToString::to_string).collect(),
-        frequency: Expr::from(&curves.frequency.polynomial()).to_string(),
+        frequency: curves.driving_frequency().to_string(),
         curves: curves
             .curves
             .iter()

@@ -6,7 +6,7 @@ use strsim::osa_distance;
 
 use super::error::{ParseError, shortened};
 use super::lexer::{Kind, Token};
-use super::{Parser, RESERVED_NAMES};
+use super::{NAMES_OF_ANSWERS, Parser};
 use crate::expr::Function;
 use crate::symbol::{GREEK, Symbol};
 
@@ -21,42 +21,23 @@ fn is_letter(name: &str) -> bool {
 }
 
 impl Parser<'_> {
-    /// Whether a name stands anywhere.
-    fn has_name(&self, name: &str) -> bool {
-        let mut names = self.tokens.iter().filter(|token| token.kind == Kind::Name);
-        names.any(|token| &self.text[token.span()] == name)
-    }
-
     /// The letter that carries primes, after a look at every name.
     pub(super) fn coordinate(&self) -> Result<Symbol, ParseError> {
         let mut primed: Option<(Token, &str)> = None;
-        for (index, token) in self
-            .tokens
-            .iter()
-            .enumerate()
-            .filter(|(_, token)| token.kind == Kind::Name)
-        {
+        for token in self.tokens.iter().filter(|token| token.kind == Kind::Name) {
             let name = &self.text[token.span()];
             let bare = name.trim_end_matches('\'');
-            let called = self.tokens.get(index + 1).is_some_and(|next| next.kind == Kind::Open);
-            if RESERVED_NAMES.contains(&bare) && !called {
-                let meaning = match bare {
-                    "A" | "a" => "the amplitude",
-                    "theta" => "the phase",
-                    _ => "the frequency",
-                };
-                let message = format!("`{bare}` is reserved: it is {meaning} in the answer");
-                let help = match bare {
-                    "theta" => "another name, such as `phi`".to_owned(),
-                    // That of a drive, or the linear one.
-                    "omega" if self.has_name("t") => "another name, such as `Omega`".to_owned(),
-                    "omega" if !self.has_name("omega0") => "another name, such as `omega0`".to_owned(),
-                    _ => format!("another name, such as `{bare}1`"),
-                };
-                return Err(self.error(token.span(), &message, &help));
-            }
             if bare.len() == name.len() || Function::from_name(bare).is_some() || bare == "t" || bare == "pi" {
                 continue;
+            }
+            if NAMES_OF_ANSWERS.contains(&bare) {
+                let meaning = if bare == "omega" {
+                    "the frequency"
+                } else {
+                    "the amplitude"
+                };
+                let message = format!("`{bare}` is reserved: it is {meaning} in the answer");
+                return Err(self.error(token.span(), &message, "another name, such as `x`"));
             }
             if !is_letter(bare) {
                 let message = format!("`{name}`: primes belong to a single letter or a Greek one");

@@ -406,7 +406,7 @@ impl<'a> Question<'a> {
     ) -> Result<Vec<Line>, ExprError> {
         let letters = Letters::beside(&self.oscillator.names());
         let mut lines = self.projected.along(self.oscillator, &Expr::from(self.a), &letters)?;
-        let theta = Expr::symbol("theta");
+        let theta = Expr::from(self.oscillator.phase());
         let turned = &(Expr::from(i64::from(self.p)) * theta) + &Expr::from(self.phase);
         lines.push(Line::equation(self.drive.angle(), turned).because("the drive turns with"));
         lines.push(

@@ -60,7 +60,7 @@ pub(crate) use parse::excerpt;
 pub use parse::{Equation, ParseError, RESERVED_NAMES, parse_equation, parse_expression};
 pub use print::Fraction;
 pub(crate) use print::Inside;
-pub use rounding::Rounded;
+pub use rounding::{LostDigits, Rounded};
 pub use typed::{Quotation, Typed};
 
 pub use crate::symbol::{fresh, fresh_stem};

@@ -18,11 +18,11 @@ mod section;
 mod sensitivity;
 mod sweep;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use thiserror::Error;
 
-use crate::expr::{Expr, ExprError};
+use crate::expr::{Expr, ExprError, LostDigits};
 use crate::interrupt::Interrupt;
 use crate::mechanics::{Equations, MechanicsError, Mechanism, Rates};
 use crate::oscillator::Oscillator;
@@ -130,6 +130,9 @@ pub enum TrajectoryError {
         "the period `{0}` of the section is {1}: it must be positive, and the motion shorter than {MOST_CROSSINGS} of it"
     )]
     Period(Expr, f64),
+    /// A start so large that a rate has no digits there.
+    #[error(transparent)]
+    LostDigits(#[from] LostDigits),
     /// The equations cannot be followed.
     #[error(transparent)]
     System(#[from] SystemError),
@@ -233,21 +236,38 @@ impl Course {
         Ok(())
     }
 
-    /// The names that need a number.
+    /// The names that take a number: those of the motion, and those of the energy alone, as a mass that cancels.
     pub fn parameters(&self) -> Vec<Symbol> {
+        let mut all = self.parameters_of_motion();
+        all.extend(self.parameters_of_energy());
+        all.into_iter().collect()
+    }
+
+    /// The names without whose numbers nothing moves.
+    fn parameters_of_motion(&self) -> BTreeSet<Symbol> {
+        let section = self.section.iter().map(Section::expression);
+        let all = self.rates.right.iter().chain(section).flat_map(Expr::symbols);
+        all.filter(|name| !self.is_variable(*name)).collect()
+    }
+
+    /// The names that stand in the energy.
+    fn parameters_of_energy(&self) -> BTreeSet<Symbol> {
         let energy = self.energy.iter();
         let energy = energy.flat_map(|energy| energy.powers.iter().map(|(_, power)| power).chain([&energy.value]));
-        let section = self.section.iter().map(Section::expression);
-        let all = self
-            .rates
-            .right
-            .iter()
-            .chain(energy)
-            .chain(section)
-            .flat_map(Expr::symbols);
-        let all: std::collections::BTreeSet<Symbol> = all.collect();
-        let own = |name: &Symbol| self.rates.states.contains(name) || name.name() == "t";
-        all.into_iter().filter(|name| !own(name)).collect()
+        let all = energy.flat_map(Expr::symbols);
+        all.filter(|name| !self.is_variable(*name)).collect()
+    }
+
+    fn is_variable(&self, name: Symbol) -> bool {
+        self.rates.states.contains(&name) || name.name() == "t"
+    }
+
+    /// The names without a number that the motion does not depend on and its energy does: without them the energy is not accounted
+    /// for.
+    pub fn missing_for_energy(&self) -> Vec<Symbol> {
+        let of_motion = self.parameters_of_motion();
+        let missing = |name: &Symbol| !self.values.contains_key(name) && !of_motion.contains(name);
+        self.parameters_of_energy().into_iter().filter(missing).collect()
     }
 
     /// Follows the motion.
@@ -288,16 +308,22 @@ impl Course {
     /// As [`Course::follow`].
     pub fn follow_by(self, integrator: Integrator) -> Result<Trajectory, TrajectoryError> {
         let needed = self.parameters();
-        let missing: Vec<Symbol> = needed
-            .iter()
+        let missing: Vec<Symbol> = self
+            .parameters_of_motion()
+            .into_iter()
             .filter(|name| !self.values.contains_key(name))
-            .copied()
             .collect();
         if !missing.is_empty() {
             return Err(TrajectoryError::Missing(missing));
         }
         if !(self.duration > 0.0 && self.duration.is_finite()) {
             return Err(TrajectoryError::Duration(self.duration));
+        }
+        let mut at_start = self.values.clone();
+        at_start.extend(self.rates.states.iter().copied().zip(self.start.iter().copied()));
+        at_start.insert(Symbol::new("t"), 0.0);
+        for right in &self.rates.right {
+            right.check_digits(&at_start, &self.rates.states)?;
         }
         let mut states = self.rates.states.clone();
         let mut right: Vec<Expr> = self
@@ -308,7 +334,8 @@ impl Course {
             .collect::<Result<_, _>>()?;
         let mut start = self.start.clone();
         let mut taken: Vec<Symbol> = states.iter().chain(&needed).copied().collect();
-        for (_, power) in self.energy.iter().flat_map(|energy| &energy.powers) {
+        let energy = self.energy.as_ref().filter(|_| self.missing_for_energy().is_empty());
+        for (_, power) in energy.iter().flat_map(|energy| &energy.powers) {
             let work = fresh("work", &taken);
             taken.push(work);
             states.push(work);
@@ -418,6 +445,9 @@ impl Trajectory {
     /// The account of the energy.
     fn account(&self) -> Option<Balance> {
         let energy = self.course.energy.as_ref()?;
+        if !self.course.missing_for_energy().is_empty() {
+            return None;
+        }
         let count = self.course.rates.states.len();
         let at = |time: f64| {
             let state = self.all_at(time)?;

@@ -44,6 +44,7 @@ pub use quantity::{Computed, Lack, NAMES};
 pub use unknown::Demand;
 
 use crate::decimal::{decimal, significant};
+use crate::exact::Rational;
 use crate::expr::Expr;
 use crate::symbol::Symbol;
 use quantity::Evaluator;
@@ -313,6 +314,9 @@ fn compare(
         (Stated::Number(printed), Ok(Computed::Exact(number))) => {
             printed.is_reproduced_exactly_by(number, question.rounding, question.tolerance)
         }
+        (Stated::Number(printed), Ok(Computed::Absent)) => {
+            printed.is_reproduced_exactly_by(&Rational::default(), question.rounding, question.tolerance)
+        }
         (Stated::Formula(printed), Ok(Computed::Formula(formula))) => {
             let printed = identity::with_definitions(printed, &question.values);
             printed
@@ -428,6 +432,12 @@ fn against(claim: &Claim, tried: &Tried) -> Vec<String> {
     }
     let entries = claim.entries.iter().zip(&tried.computed);
     let each = entries.flat_map(|(entry, found)| match (&entry.stated, found) {
+        (Stated::Number(_), Ok(Computed::Absent)) => {
+            vec![format!(
+                "printed {}, but the derived law has no such term",
+                entry.printed
+            )]
+        }
         (Stated::Number(printed), Ok(found)) => {
             let number = found.number().unwrap_or(f64::NAN);
             vec![versus(entry, printed, number)]
@@ -487,6 +497,9 @@ fn formula_versus(printed: Result<Expr, String>, formula: &Expr) -> Vec<String> 
     }
 }
 
+/// The coefficient of a term that does not occur, in words.
+pub(crate) const ABSENT: &str = "0, no such term";
+
 /// What is computed for all entries.
 fn numbers_of(claim: &Claim, tried: &Tried) -> String {
     let words = claim
@@ -499,6 +512,7 @@ fn numbers_of(claim: &Claim, tried: &Tried) -> String {
                 _ => decimal(*number),
             },
             Ok(Computed::Exact(fraction)) => fraction.to_string(),
+            Ok(Computed::Absent) => ABSENT.to_owned(),
             Ok(Computed::Formula(formula)) => formula.to_string(),
             Ok(Computed::Conflicts(conflicts)) => format!("{} conflicts", conflicts.len()),
             Err(Lack::Missing(_)) => "none".to_owned(),

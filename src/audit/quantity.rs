@@ -147,6 +147,8 @@ pub enum Computed {
     Number(f64),
     /// A fraction.
     Exact(Rational),
+    /// Zero, as the coefficient of a term that the derived law could have and has not.
+    Absent,
     /// A formula.
     Formula(Expr),
     /// What options have against each other.
@@ -159,6 +161,7 @@ impl Computed {
         match self {
             Self::Number(number) => Some(*number),
             Self::Exact(fraction) => Some(to_f64(fraction)),
+            Self::Absent => Some(0.0),
             Self::Formula(_) | Self::Conflicts(_) => None,
         }
     }
@@ -213,7 +216,7 @@ impl<'a> Evaluator<'a> {
                 let law = self.polynomial(*squared)?;
                 let monomial =
                     monomial(term).ok_or_else(|| Lack::Refused(format!("`{term}` is no product of powers")))?;
-                Ok(Computed::Exact(law.coefficient(&monomial)))
+                coefficient(&law, &monomial)
             }
             Quantity::Law { squared } => Ok(Computed::Formula(Expr::from(&self.polynomial(*squared)?))),
             Quantity::Taylor { formula, degree } => {
@@ -298,6 +301,33 @@ fn monomial(term: &Expr) -> Option<Monomial> {
     let polynomial = term.to_polynomial(&mut |_| None).ok()??;
     let (monomial, number) = polynomial.single_term()?;
     num_traits::One::is_one(number).then(|| monomial.clone())
+}
+
+/// The coefficient of a product of powers in a derived law.
+///
+/// # Errors
+/// A letter that the law does not have, or a power of it beyond the last one that was derived.
+fn coefficient(law: &Polynomial, wanted: &Monomial) -> Result<Computed, Lack> {
+    if law.terms().any(|(monomial, _)| monomial == wanted) {
+        return Ok(Computed::Exact(law.coefficient(wanted)));
+    }
+    for &(letter, power) in wanted.factors() {
+        let powers = law.terms().map(|(monomial, _)| monomial.exponent(letter));
+        let [least, greatest] = powers.fold([0, 0], |[least, greatest], one| [least.min(one), greatest.max(one)]);
+        if [least, greatest] == [0, 0] {
+            return Err(Lack::Refused(format!(
+                "`{letter}` does not occur in the derived law `{}`",
+                Expr::from(law)
+            )));
+        }
+        if power > greatest {
+            return Err(Lack::Refused(format!(
+                "the derived law `{}` ends before the power {power} of `{letter}`: ask for a higher `order`",
+                Expr::from(law)
+            )));
+        }
+    }
+    Ok(Computed::Absent)
 }
 
 /// The names of one evaluation and what they are.

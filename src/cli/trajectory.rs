@@ -172,9 +172,9 @@ fn course(problem: &Problem, asked: &Asked) -> Result<Course, Failure> {
     let mut course = problem
         .course()
         .map_err(|error| Failure::refused(&error, error.help()))?;
-    let values = exact_values(asked.at, problem.values_of_motion())?.unwrap_or_default();
     course.section = section(&course, asked)?;
     let needed = course.parameters();
+    let values = exact_values(asked.at, problem.values_with(&needed))?.unwrap_or_default();
     if let Some(unknown) = values.numbers().into_keys().find(|name| !needed.contains(name)) {
         return Err(refused(TrajectoryError::Unknown(unknown)));
     }

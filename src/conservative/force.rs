@@ -20,13 +20,17 @@ use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
 use crate::series::taylor::taylor;
 use crate::symbol::Symbol;
 
-/// The degree of the polynomial near rest.
+/// The degree of the polynomial near rest of a force whose leading term is linear.
 const DEGREE: u32 = 10;
+
+/// The degree for a force that begins with a higher power, as `sin(x) - x` does: a difference that keeps fewer digits near rest
+/// needs its polynomial farther out.
+const DEGREE_OF_HIGHER_POWERS: u32 = 32;
 
 /// A force as a function of the distance from its equilibrium.
 pub struct Force {
     of: Rc<AtNumbers>,
-    near: Option<Near>,
+    near: Option<NearRest>,
     evaluations: Cell<u64>,
 }
 
@@ -47,10 +51,25 @@ struct AtNumbers {
     poles: RefCell<BTreeMap<u64, bool>>,
 }
 
-/// The Taylor polynomial and the distance up to which it is as good as the force.
-struct Near {
+/// The Taylor polynomial of a force about its equilibrium, and the distance up to which it is as good as the force.
+#[derive(Clone, Debug)]
+pub(crate) struct NearRest {
     coefficients: Vec<f64>,
     radius: f64,
+}
+
+impl NearRest {
+    /// The force at the distance `y` from the equilibrium; `None` farther out than the polynomial reaches.
+    pub(crate) fn value(&self, y: f64) -> Option<f64> {
+        let sum = || self.coefficients.iter().rev().fold(0.0, |sum, c| sum * y + c);
+        (y.abs() <= self.radius).then(sum)
+    }
+
+    /// The derivative of the force there; `None` farther out than the polynomial reaches.
+    pub(crate) fn slope(&self, y: f64) -> Option<f64> {
+        let terms = || self.coefficients.iter().enumerate().skip(1).rev();
+        (y.abs() <= self.radius).then(|| terms().fold(0.0, |sum, (k, c)| sum * y + k as f64 * c))
+    }
 }
 
 impl Force {
@@ -109,19 +128,19 @@ impl Force {
 
     /// The force at the distance `y` from the equilibrium.
     pub fn at(&self, y: f64) -> f64 {
-        match self.near.as_ref().filter(|near| y.abs() <= near.radius) {
-            Some(near) => near.coefficients.iter().rev().fold(0.0, |sum, c| sum * y + c),
-            None => self.call(&self.of.value, y),
-        }
+        let near = self.near.as_ref().and_then(|near| near.value(y));
+        near.unwrap_or_else(|| self.call(&self.of.value, y))
+    }
+
+    /// The polynomial that stands in for the force near rest; `None` where the force itself has all its digits there.
+    pub(crate) fn polynomial_near_rest(&self) -> Option<&NearRest> {
+        self.near.as_ref()
     }
 
     /// Its derivative there, jumps left out; NaN where it has none.
     pub fn slope(&self, y: f64) -> f64 {
-        match (self.near.as_ref().filter(|near| y.abs() <= near.radius), &self.of.slope) {
-            (Some(near), _) => {
-                let terms = near.coefficients.iter().enumerate().skip(1).rev();
-                terms.fold(0.0, |sum, (k, c)| sum * y + k as f64 * c)
-            }
+        match (self.near.as_ref().and_then(|near| near.slope(y)), &self.of.slope) {
+            (Some(slope), _) => slope,
             (None, Some(slope)) => self.call(slope, y),
             (None, None) => f64::NAN,
         }
@@ -173,7 +192,7 @@ impl Force {
     }
 
     /// The polynomial near rest, where rounding of the force itself would show at this amplitude.
-    fn near_rest(&self, amplitude: f64) -> Option<Near> {
+    fn near_rest(&self, amplitude: f64) -> Option<NearRest> {
         /// Relative errors below this are no loss.
         const HARMLESS: f64 = 2e-14;
         /// How many amplitudes the polynomial may reach: farther than the search for the edge of a well.
@@ -196,8 +215,9 @@ impl Force {
         }
         let coefficients = self.of.coefficients.get_or_init(|| self.of.expanded()).as_ref()?;
         let size = |k: usize, radius: f64| coefficients.get(k).map_or(0.0, |c| c.abs() * radius.powi(k as i32));
+        let first = coefficients.iter().position(|c| *c != 0.0)?;
         let good = |radius: f64| {
-            let leading = (1..=3).map(|k| size(k, radius)).fold(0.0, f64::max);
+            let leading = (first..first + 3).map(|k| size(k, radius)).fold(0.0, f64::max);
             let last = coefficients.len() - 1;
             leading.is_finite() && (last - 2..=last).all(|k| size(k, radius) <= 1e-17 * leading)
         };
@@ -209,7 +229,7 @@ impl Force {
         };
         let mut radii = radii(FARTHEST * amplitude.abs(), 0.5).take(240);
         let radius = radii.find(|&radius| good(radius) && clear(radius))?;
-        Some(Near {
+        Some(NearRest {
             coefficients: coefficients.clone(),
             radius,
         })
@@ -343,16 +363,23 @@ impl AtNumbers {
     fn expanded(&self) -> Option<Vec<f64>> {
         let moved = Expr::from(self.coordinate) + self.equilibrium.0.clone();
         let about = self.force.substitute(self.coordinate, &moved).ok()?;
-        let parts = taylor(&about, &[(self.coordinate, Rational::zero())], DEGREE).ok()?;
         let mut at_one = self.numbers.clone();
         at_one.insert(self.coordinate, 1.0);
-        let mut coefficients: Vec<f64> = parts
-            .iter()
-            .map(|part| part.evaluate(&at_one).ok())
-            .collect::<Option<_>>()?;
-        // At the equilibrium the force is zero, whatever rounding says.
-        *coefficients.first_mut()? = 0.0;
-        Some(coefficients)
+        let up_to = |degree: u32| -> Option<Vec<f64>> {
+            let parts = taylor(&about, &[(self.coordinate, Rational::zero())], degree).ok()?;
+            let mut coefficients: Vec<f64> = parts
+                .iter()
+                .map(|part| part.evaluate(&at_one).ok())
+                .collect::<Option<_>>()?;
+            // At the equilibrium the force is zero, whatever rounding says.
+            *coefficients.first_mut()? = 0.0;
+            Some(coefficients)
+        };
+        let coefficients = up_to(DEGREE)?;
+        match coefficients[1] == 0.0 {
+            true => up_to(DEGREE_OF_HIGHER_POWERS),
+            false => Some(coefficients),
+        }
     }
 }
 

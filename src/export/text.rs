@@ -415,6 +415,9 @@ pub(super) fn judgement(
             },
         );
     }
+    if let Some(reason) = &verification.no_deviation {
+        line("largest deviation", format!("not judged: {reason}"));
+    }
     for (name, value) in verification.followed.iter().flat_map(followed) {
         line(name, value);
     }

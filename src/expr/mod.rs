@@ -61,7 +61,7 @@ pub(crate) use parse::excerpt;
 pub use parse::{Equation, NAMES_OF_ANSWERS, ParseError, parse_equation, parse_expression};
 pub use print::Fraction;
 pub(crate) use print::Inside;
-pub use rounding::Rounded;
+pub use rounding::{LostDigits, Rounded};
 pub use typed::{Quotation, Typed};
 
 pub use crate::symbol::{fresh, fresh_stem, phase_beside};

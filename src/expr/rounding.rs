@@ -6,9 +6,13 @@
 //! `4*(cos(A/sqrt(2)) - cos(A))/A^2` is right as a formula and has no correct digit at `A = 1e-8`: both cosines are one. Whoever
 //! evaluates it has to know.
 
+use std::collections::BTreeMap;
+
 use num_traits::{One, Signed};
+use thiserror::Error;
 
 use super::{Expr, Node};
+use crate::decimal::{decimal, significant};
 use crate::exact::rational::to_f64;
 use crate::symbol::Symbol;
 
@@ -18,7 +22,82 @@ pub type Rounded = (f64, f64);
 /// Half a unit in the last place, and some room for library functions that are not quite as good.
 const UNIT: f64 = 1.5 * f64::EPSILON;
 
+/// The part of its size by which rounding may move a force before nothing that is computed from it has its six digits.
+const MOST_LOST: f64 = 1e-6;
+
+/// An expression whose value double precision does not hold: at a position so large, its next neighbour among the doubles is far away.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error(
+    "`{expression}` has no digits left at {name} = {}: in double precision {name} and what is made of it are rounded there so \
+     coarsely that the value moves by {} of its size; take a smaller {name}",
+    decimal(*value), significant(*lost, 2)
+)]
+#[non_exhaustive]
+pub struct LostDigits {
+    /// The expression, shortened.
+    pub expression: String,
+    /// The symbol whose rounding moves it.
+    pub name: Symbol,
+    /// The value of that symbol.
+    pub value: f64,
+    /// How far rounding moves the expression, over its size near that value.
+    pub lost: f64,
+}
+
 impl Expr {
+    /// Refuses a place at which this expression has no digits: where rounding moves it by more than a millionth of its size, the
+    /// `uncertain` symbols being rounded themselves, there and a little nearer to zero, so that neither a jump nor a zero at the
+    /// place counts. A difference that loses its digits towards zero is no such place: they are there for no smaller values.
+    ///
+    /// # Errors
+    /// [`LostDigits`] names the symbol.
+    ///
+    /// ```
+    /// use lindstedt::expr::Expr;
+    /// let force: Expr = "sin(x)".parse()?;
+    /// assert!(force.check_digits(&[("x".into(), 1e17)].into(), &["x".into()]).is_err());
+    /// assert!(force.check_digits(&[("x".into(), 1e3)].into(), &["x".into()]).is_ok());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn check_digits(&self, values: &BTreeMap<Symbol, f64>, uncertain: &[Symbol]) -> Result<(), LostDigits> {
+        const NEARER: [f64; 5] = [1.0, 0.999, 0.98, 0.9, 0.7];
+        let lost_at = |scale: f64| {
+            let (mut least, mut size) = (f64::INFINITY, 0.0_f64);
+            for factor in NEARER.map(|factor| scale * factor) {
+                let there = |symbol: Symbol| {
+                    let value = *values.get(&symbol)?;
+                    Some(match uncertain.contains(&symbol) {
+                        true => (factor * value, 0.5 * f64::EPSILON * (factor * value).abs()),
+                        false => (value, 0.0),
+                    })
+                };
+                if let Some((value, error)) = self.evaluate_rounded(&there).filter(|(value, _)| value.is_finite()) {
+                    least = least.min(error);
+                    size = size.max(value.abs());
+                }
+            }
+            (size > 0.0 && least.is_finite()).then(|| least / size)
+        };
+        let Some(lost) = lost_at(1.0).filter(|lost| *lost > MOST_LOST) else {
+            return Ok(());
+        };
+        let mut smaller = (1..=100).filter_map(|thousands| lost_at(1e-3_f64.powi(thousands)));
+        if !smaller.any(|lost| lost <= MOST_LOST) {
+            return Ok(());
+        }
+        let of_one = |name: &Symbol| values.get(name).map_or(0.0, |value| value.abs());
+        let worst = uncertain.iter().copied().filter(|name| self.contains(*name));
+        let Some(name) = worst.max_by(|one, other| of_one(one).total_cmp(&of_one(other))) else {
+            return Ok(());
+        };
+        Err(LostDigits {
+            expression: super::print::in_message(self),
+            name,
+            value: values.get(&name).copied().unwrap_or_default(),
+            lost,
+        })
+    }
+
     /// The value with a bound of the error that rounding makes, given the same of the symbols; `None` where a symbol is missing.
     ///
     /// ```

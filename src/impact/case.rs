@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 use thiserror::Error;
 
 use super::dissipation::{
-    ContactDamping, ContactScales, DampingError, Dissipation, friction_of_torque, torque_of_friction,
+    ContactDamping, ContactScales, DampingError, Dissipation, SpeedUnit, friction_of_torque, torque_of_friction,
     viscous_coefficient, viscous_ratio,
 };
 use super::hertz::{Design, NotPositive};
@@ -41,8 +41,10 @@ pub struct Case {
     pub gamma: Option<f64>,
     /// Damping of the contact.
     pub contact_damping: ContactDamping,
-    /// The speed, in units of L omega, at which a restitution is stated; without it that of the first touch without damping.
+    /// The speed, in `speed_unit`, at which a restitution is stated; without it that of the first touch without damping.
     pub at_speed: Option<f64>,
+    /// The unit of that speed.
+    pub speed_unit: SpeedUnit,
     /// Viscous damping ratio zeta, dimensionless, not negative.
     pub zeta: f64,
     /// The coefficient of the viscous force on the bob, N s/m, in place of zeta.
@@ -73,6 +75,7 @@ impl Default for Case {
             gamma: None,
             contact_damping: ContactDamping::Mu(0.0),
             at_speed: None,
+            speed_unit: SpeedUnit::default(),
             zeta: 0.0,
             viscous: None,
             alpha: 0.0,
@@ -252,7 +255,17 @@ impl Case {
             left: barrier(self.left),
             right: barrier(self.right),
         };
-        model.check(start)?;
+        let released = |error| match error {
+            ModelError::LostDigits {
+                parameter: Parameter::Start,
+                ..
+            } if self.start.is_none() => ModelError::LostDigits {
+                parameter: Parameter::Amplitude,
+                value: self.amplitude,
+            },
+            error => error,
+        };
+        model.check(start).map_err(released)?;
         if self.start.is_none()
             && let Some((side, _)) = model.depth(start.x)
         {
@@ -285,8 +298,15 @@ impl Case {
             mass: self.design.mass,
             length: self.design.length,
             gravity: self.design.gravity,
-            speed: self.at_speed.or_else(|| self.touch_speed(start)),
+            speed: self.stated_speed().or_else(|| self.touch_speed(start)),
         }
+    }
+
+    /// The speed at which a restitution is stated, in units of L omega; `None` where none is stated.
+    fn stated_speed(&self) -> Option<f64> {
+        let Design { length, gravity, .. } = self.design;
+        let speed = self.at_speed?;
+        Some(self.speed_unit.dimensionless(speed, length, gravity))
     }
 
     /// The speed of the first touch from this start, by the energy of the swing: without damping and with the pivot at rest.
@@ -360,6 +380,10 @@ impl Case {
             },
             at_speed: match damping {
                 ContactDamping::Restitution(_) => scales.speed,
+                _ => None,
+            },
+            at_speed_si: match (damping, self.speed_unit) {
+                (ContactDamping::Restitution(_), SpeedUnit::MetresPerSecond) => self.at_speed,
                 _ => None,
             },
             touch_speed,

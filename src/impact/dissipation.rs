@@ -20,6 +20,7 @@ use thiserror::Error;
 use super::contact::hunt_crossley::{damping_for, restitution};
 use super::parameter::Parameter;
 use super::units::Units;
+use crate::decimal::decimal;
 
 /// What damps the contact, in the form in which it is given and held fixed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,6 +35,41 @@ pub enum ContactDamping {
     Restitution(f64),
     /// c of F = (k + c d') d^(3/2), N s/m^(5/2).
     Coefficient(f64),
+}
+
+/// The unit in which the speed of a restitution is stated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SpeedUnit {
+    /// L omega = sqrt(g L), the unit of equation (7): the speed is an angular velocity in rad times omega.
+    #[default]
+    RadOmega,
+    /// m/s, that of the bob.
+    MetresPerSecond,
+}
+
+impl SpeedUnit {
+    /// `rad*omega` or `m/s`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::RadOmega => "rad*omega",
+            Self::MetresPerSecond => "m/s",
+        }
+    }
+
+    /// A speed in this unit, of a pendulum of this length in m under this gravity in m/s^2, in units of L omega.
+    ///
+    /// ```
+    /// use lindstedt::impact::SpeedUnit;
+    ///
+    /// assert_eq!(SpeedUnit::MetresPerSecond.dimensionless(3.0, 0.25, 9.0), 2.0); // sqrt(g L) = 1.5 m/s
+    /// assert_eq!(SpeedUnit::RadOmega.dimensionless(3.0, 0.25, 9.0), 3.0);
+    /// ```
+    pub fn dimensionless(self, speed: f64, length: f64, gravity: f64) -> f64 {
+        match self {
+            Self::RadOmega => speed,
+            Self::MetresPerSecond => speed / (gravity * length).sqrt(),
+        }
+    }
 }
 
 /// What a damping of the contact is measured by.
@@ -69,7 +105,7 @@ pub enum DampingError {
     /// A restitution at no speed.
     #[error(
         "[contact] restitution is that at a speed, and without damping this motion touches no barrier, or starts inside one: give \
-         `at_speed`, in rad times omega"
+         `at_speed`, in m/s beside numbers in SI units and otherwise in rad times omega"
     )]
     NoSpeed,
     /// A speed that is none.
@@ -258,6 +294,8 @@ pub struct Dissipation {
     pub coefficient: Option<f64>,
     /// The speed at which a given restitution is stated, in units of L omega.
     pub at_speed: Option<f64>,
+    /// The same in m/s, where it is stated so.
+    pub at_speed_si: Option<f64>,
     /// The speed of the first touch without damping, in units of L omega; nothing where no barrier is reached.
     pub touch_speed: Option<f64>,
     /// The restitution at that speed.
@@ -277,6 +315,15 @@ pub struct Dissipation {
 }
 
 impl Dissipation {
+    /// The speed at which a given restitution is stated, with its unit: `1 m/s, 1.22347 rad*omega` where that is how it is stated.
+    pub fn at_speed_in_words(&self) -> Option<String> {
+        let own = format!("{} {}", decimal(self.at_speed?), SpeedUnit::RadOmega.name());
+        Some(match self.at_speed_si {
+            Some(speed) => format!("{} {}, {own}", decimal(speed), SpeedUnit::MetresPerSecond.name()),
+            None => own,
+        })
+    }
+
     /// What is held fixed, of the dampings that are there: `mu`, `zeta`.
     pub fn held_fixed(&self) -> Vec<&'static str> {
         [

@@ -183,7 +183,13 @@ pub fn fit(rule: Rule, elastic_force: impl Fn(f64) -> f64, deepest: f64) -> Resu
 /// A force that is not finite or not smooth.
 pub fn work(elastic_force: impl Fn(f64) -> f64, depth: f64) -> Result<f64, QuadratureError> {
     // d = q^2 makes any force in powers of sqrt(d) smooth.
-    Ok(integrate_smooth(|q| 2.0 * q * elastic_force(q * q), 0.0, depth.max(0.0).sqrt(), 1e-14)?.0)
+    match integrate_smooth(|q| 2.0 * q * elastic_force(q * q), 0.0, depth.max(0.0).sqrt(), 1e-14) {
+        // A force that is a difference near the touch leaves no more digits than this.
+        Err(QuadratureError::NotConverged {
+            value, error_estimate, ..
+        }) if error_estimate <= 1e-11 * value.abs() => Ok(value),
+        result => result.map(|(work, _)| work),
+    }
 }
 
 /// The depth at which the force has done this work: where an impact of that energy (per unit of gamma) turns, gravity
@@ -196,9 +202,10 @@ pub fn greatest_depth(elastic_force: impl Fn(f64) -> f64, energy: f64) -> Result
     if !(energy.is_finite() && energy > 0.0) {
         return Err(LinearisationError::NeverStops(energy));
     }
+    // A depth at which the force has no value, as one beyond the range of numbers, is too deep.
     let missing = |root_depth: f64| match work(&elastic_force, root_depth * root_depth) {
         Ok(work) => work / energy - 1.0,
-        Err(_) => f64::NAN,
+        Err(_) => 1.0,
     };
     // The unknown is sqrt(depth): doubled or halved until it brackets.
     let (mut low, mut high) = (1.0, 1.0);
@@ -212,7 +219,10 @@ pub fn greatest_depth(elastic_force: impl Fn(f64) -> f64, energy: f64) -> Result
         }
     }
     Err(match low < 1.0 {
-        true => LinearisationError::TooShallow(energy),
+        true => match work(&elastic_force, low * low) {
+            Err(error) => error.into(),
+            Ok(_) => LinearisationError::TooShallow(energy),
+        },
         false => LinearisationError::NeverStops(energy),
     })
 }

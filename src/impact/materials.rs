@@ -16,7 +16,7 @@ use thiserror::Error;
 use super::baseline::BASELINE_DURATIONS;
 use super::case::{Case, CaseError};
 use super::contact::HuntCrossley;
-use super::dissipation::{ContactDamping, Dissipation};
+use super::dissipation::{ContactDamping, Dissipation, SpeedUnit};
 use super::hertz;
 use super::model::{Model, Start};
 use super::parameter::Parameter;
@@ -55,7 +55,7 @@ pub struct Material {
     pub yield_limit: Option<f64>,
     /// The damping of its contact, where it has one of its own.
     pub damping: Option<ContactDamping>,
-    /// The speed, in units of L omega, at which its restitution is stated.
+    /// The speed at which its restitution is stated, in the unit of the case.
     pub at_speed: Option<f64>,
 }
 
@@ -357,7 +357,7 @@ fn longer(settings: &Settings) -> Settings {
 }
 
 impl MaterialQuestion {
-    /// The case of a material, with this damping of its contact.
+    /// The case of a material, with this damping of its contact; the speed is in the unit of the case.
     fn case_of(&self, material: &Material, damping: ContactDamping, at_speed: Option<f64>) -> Case {
         let mut case = self.case;
         case.gamma = None;
@@ -484,7 +484,8 @@ fn held_fixed(question: &MaterialQuestion, dissipation: &Dissipation) -> Result<
             rest_times: vec![],
         };
         for material in &question.materials {
-            let case = question.case_of(material, damping, at_speed);
+            let mut case = question.case_of(material, damping, at_speed);
+            case.speed_unit = SpeedUnit::RadOmega;
             let (model, start) = MaterialQuestion::motion_of(material, &case)?;
             held.ratios.push(model.mu / model.gamma);
             held.restitutions.push(case.dissipation(None)?.restitution);
@@ -539,7 +540,10 @@ impl MaterialStudy {
         let material = self.question.materials.get(row).ok_or(MaterialsError::NoMaterial)?;
         let case = match held {
             None => self.question.own_case(material),
-            Some(held) => self.question.case_of(material, held.damping, held.at_speed),
+            Some(held) => Case {
+                speed_unit: SpeedUnit::RadOmega,
+                ..self.question.case_of(material, held.damping, held.at_speed)
+            },
         };
         let (model, start) = MaterialQuestion::motion_of(material, &case)?;
         self.follow(&model, start, duration)

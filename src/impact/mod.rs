@@ -93,7 +93,7 @@ pub use collision::{Collision, CollisionError};
 pub use compare::{ImpactComparison, ImpactMethod, ImpactRow, compare};
 pub use derived::{DerivedContact, Flight, NoFlight};
 pub use dissipation::{
-    ContactDamping, ContactScales, DampingError, Dissipation, friction_of_torque, torque_of_friction,
+    ContactDamping, ContactScales, DampingError, Dissipation, SpeedUnit, friction_of_torque, torque_of_friction,
     viscous_coefficient, viscous_ratio,
 };
 pub use form::{Form, Term};

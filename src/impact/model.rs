@@ -17,6 +17,7 @@ use thiserror::Error;
 
 use super::hertz;
 use super::parameter::Parameter;
+use crate::decimal::{decimal, significant};
 
 /// How dry friction depends on the velocity.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -155,6 +156,18 @@ pub enum ModelError {
     /// A stiffness that is negative, or zero beside a barrier.
     #[error("[contact] gamma must be a positive number, or 0 for no barrier at all, not {0}")]
     Stiffness(f64),
+    /// An angle at which the sine has no digits left.
+    #[error(
+        "{parameter} = {} is an angle whose sine has no digits left: in double precision it is rounded to {} rad there; take one below \
+         {LARGEST_ANGLE:e} rad",
+        decimal(*value), significant(value.abs() * f64::EPSILON, 1)
+    )]
+    LostDigits {
+        /// Which.
+        parameter: Parameter,
+        /// What was given.
+        value: f64,
+    },
     /// Barriers in the wrong order.
     #[error("the left barrier at {left} must lie below the right one at {right}: give [left, right]")]
     Barriers {
@@ -164,6 +177,9 @@ pub enum ModelError {
         right: f64,
     },
 }
+
+/// The largest angle, rad, whose sine is known to a millionth.
+const LARGEST_ANGLE: f64 = 4e9;
 
 impl Model {
     /// Whether the parameters and the start make an equation.
@@ -184,6 +200,9 @@ impl Model {
         ];
         if let Some(&(parameter, value)) = numbers.iter().find(|(_, value)| !value.is_finite()) {
             return Err(ModelError::NotFinite { parameter, value });
+        }
+        if let Some(&(parameter, value)) = numbers[5..8].iter().find(|(_, value)| value.abs() > LARGEST_ANGLE) {
+            return Err(ModelError::LostDigits { parameter, value });
         }
         if let Some(&(parameter, value)) = numbers[..4].iter().find(|(_, value)| *value < 0.0) {
             return Err(ModelError::Negative { parameter, value });

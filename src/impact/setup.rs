@@ -11,14 +11,22 @@
 //! where a contact that loses energy has gamma F (1 + lambda d') for gamma F, d' the speed inwards,
 //! and its two forces as functions, in the coordinate z = s (x - x_e) that runs from the equilibrium x_e towards the barrier.
 
+use std::collections::BTreeMap;
+
+use num_integer::Integer as _;
+use num_traits::{Signed, ToPrimitive};
+
 use super::contact::ContactLaw;
 use super::hertz::DEFAULT_STIFFNESS;
 use super::linearisation::Rule;
 use super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Side};
 use super::units::Units;
+use crate::conservative::Force;
+use crate::conservative::force::NearRest;
 use crate::equilibrium::{centred, no_bottom, with_numbers_where_needed};
 use crate::exact::rational::ratio;
-use crate::expr::{CompiledFunction, Equation, EvaluationError, Expr, ExprError, Function};
+use crate::exact::{Integer, Rational};
+use crate::expr::{CompiledFunction, Equation, EvaluationError, Expr, ExprError, Function, LostDigits, Node};
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::solution::{AmplitudeConvention, Degrees, Method};
 use crate::symbol::{Symbol, fresh};
@@ -138,6 +146,9 @@ pub enum SetupError {
         /// Where.
         place: f64,
     },
+    /// A release or a barrier so far out that the force of the swing has no digits there.
+    #[error(transparent)]
+    LostDigits(#[from] LostDigits),
     /// A parameter without a value.
     #[error("a value is needed for `{name}`")]
     NoValue {
@@ -214,6 +225,84 @@ pub(super) struct Equations {
     /// f(x), f'(x) and F(depth), each with gamma beside it.
     forces: [CompiledFunction; 3],
     gamma: f64,
+    /// F near the touch, where it would lose its digits there.
+    near_touch: Option<NearTouch>,
+}
+
+/// The Taylor polynomial of a contact force that is a difference of nearly equal numbers near the touch.
+struct NearTouch {
+    /// In q, with depth = q^root: so a force with roots of the depth has one as well.
+    polynomial: NearRest,
+    root: u32,
+}
+
+/// The power of a symbol among the factors of a term; `None` where it stands elsewhere in them.
+fn power_of(symbol: Symbol, term: &Expr) -> Option<Rational> {
+    let mut power = Rational::default();
+    for factor in term.factors().1 {
+        let (base, exponent) = factor.base_and_exponent();
+        match (base.as_symbol() == Some(symbol), exponent.as_number()) {
+            (true, Some(exponent)) => power += exponent,
+            _ if factor.contains(symbol) => return None,
+            _ => {}
+        }
+    }
+    Some(power)
+}
+
+impl NearTouch {
+    /// The roots of the depth that the polynomial can be in: a force of higher ones is left as it is typed.
+    const HIGHEST_ROOT: u32 = 12;
+
+    /// The polynomial of this force of the depth; `None` where the force keeps its digits, does not vanish at the touch, or is
+    /// not analytic in a root of the depth.
+    fn new(force: &Expr, depth: Symbol, stiffness: (Symbol, f64)) -> Option<Self> {
+        /// A depth below all that matter: digits that are there at this one are there everywhere.
+        const SMALLEST: f64 = 1e-12;
+        if force
+            .substitute(depth, &Expr::zero())
+            .is_ok_and(|at_touch| !at_touch.is_zero())
+        {
+            return None;
+        }
+        let exponents = force.unique_nodes().filter_map(|part| match part.node() {
+            Node::Power(base, exponent) if base.contains(depth) => exponent.as_number(),
+            _ => None,
+        });
+        let root = exponents.fold(Integer::from(1), |root, exponent| root.lcm(exponent.denom()));
+        let root = root.to_u32().filter(|root| *root <= Self::HIGHEST_ROOT)?;
+        let q = Expr::from(depth);
+        // sqrt(q^2 + q^4) = q sqrt(1 + q^2): the power of q that all terms of a base have is taken out of its root.
+        let in_root = force.fold(|part, children: &[Expr]| match (part.node(), children) {
+            (Node::Symbol(name), _) if *name == depth => q.integer_power(root.into()),
+            (Node::Power(_, exponent), [base, _]) if base.contains(depth) => {
+                let powers = base.terms().iter().map(|term| power_of(depth, term));
+                let lowest = powers.min().flatten().filter(Signed::is_positive);
+                let (Some(exponent), Some(lowest)) = (exponent.as_number(), lowest) else {
+                    return part.with_children(children);
+                };
+                let common = Expr::power(&q, &Expr::number(lowest.clone()))?;
+                let rest = Expr::divide(base, &common)?.expand()?;
+                let outside = Expr::power(&q, &Expr::number(lowest * exponent))?;
+                Ok(&outside * &Expr::power(&rest, &Expr::number(exponent.clone()))?)
+            }
+            _ => part.with_children(children),
+        });
+        let numbers = BTreeMap::from([stiffness]);
+        let force = Force::new(&in_root.ok()?, depth, &Expr::zero(), &numbers, SMALLEST)?;
+        Some(Self {
+            polynomial: force.polynomial_near_rest()?.clone(),
+            root,
+        })
+    }
+
+    fn value(&self, depth: f64) -> Option<f64> {
+        self.polynomial.value(match self.root {
+            1 => depth,
+            2 => depth.sqrt(),
+            root => depth.powf(1.0 / f64::from(root)),
+        })
+    }
 }
 
 impl Equations {
@@ -229,7 +318,8 @@ impl Equations {
 
     /// F(depth) per unit of the stiffness.
     pub(super) fn elastic_force(&self, depth: f64) -> f64 {
-        self.forces[2].call(&[depth, self.gamma])
+        let near_touch = self.near_touch.as_ref().and_then(|near| near.value(depth));
+        near_touch.unwrap_or_else(|| self.forces[2].call(&[depth, self.gamma]))
     }
 }
 
@@ -317,11 +407,15 @@ impl Setup {
             Some(force) => (force.clone(), 1.0),
         };
         let judged = self.judged(&swing, letters, &written)?;
-        let function = |expression: &Expr, argument: Symbol| {
+        let in_numbers = |expression: &Expr| -> Result<Expr, ExprError> {
             let mut expression = expression.clone();
             for (name, value) in self.values.iter() {
                 expression = expression.substitute(name, value)?;
             }
+            Ok(expression)
+        };
+        let function = |expression: &Expr, argument: Symbol| {
+            let expression = in_numbers(expression)?;
             let known = [argument, letters.stiffness, Symbol::new("pi")];
             match expression.symbols().into_iter().find(|name| !known.contains(name)) {
                 Some(name) => Err(SetupError::NoValue { name }),
@@ -330,10 +424,10 @@ impl Setup {
         };
         let (known, rest) = self.values.split(&swing.parameters);
         let numerical = with_numbers_where_needed(&swing, &known)?;
-        let in_numbers = swing.with_values(&known)?;
-        let centred = centred(&in_numbers, None).ok();
+        let swing_in_numbers = swing.with_values(&known)?;
+        let centred = centred(&swing_in_numbers, None).ok();
         if centred.as_ref().is_some_and(|centred| centred.cross_well.is_some()) {
-            return Err(no_bottom(&in_numbers).into());
+            return Err(no_bottom(&swing_in_numbers).into());
         }
         let position = centred.as_ref().map(|centred| &centred.position);
         let equilibrium = position
@@ -346,13 +440,26 @@ impl Setup {
                 place: equilibrium,
             });
         }
+        let swing_alone = in_numbers(&swing.force)?;
+        for place in [self.release, self.barrier]
+            .into_iter()
+            .filter(|place| place.is_finite())
+        {
+            swing_alone.check_digits(&BTreeMap::from([(x, place)]), &[x])?;
+        }
+        let elastic = Expr::divide(&per_unit, &mass)?;
         Ok(Equations {
             equilibrium,
             forces: [
                 function(&swing.force, x)?,
                 function(&swing.force.differentiate(x)?, x)?,
-                function(&Expr::divide(&per_unit, &mass)?, letters.depth)?,
+                function(&elastic, letters.depth)?,
             ],
+            near_touch: NearTouch::new(
+                &in_numbers(&elastic)?,
+                letters.depth,
+                (letters.stiffness, self.stiffness),
+            ),
             gamma: self.stiffness,
             judged: judged.to_string(),
             values: if numerical.is_some() { rest } else { self.values.clone() },

@@ -141,7 +141,7 @@ impl Equations {
             .collect();
         there.extend(names.map(|name| (name.derivative(), Expr::zero())));
         let mut drive = Drive::Absent;
-        for rest in &self.rest {
+        for rest in self.rest.iter().filter(|rest| rest.contains(Symbol::new("t"))) {
             let written_out = rest.expand()?;
             let terms = written_out.terms().iter();
             let driving: Expr = terms.filter(|term| term.contains(Symbol::new("t"))).cloned().sum();

@@ -5,7 +5,8 @@
 //! Pi_p = p / (b_1^e_1 ... b_r^e_r)     b: as many parameters as give the units, first of inertia, then of stiffness
 //! ```
 //!
-//! (E. Buckingham, *Phys. Rev.* 4 (1914) 345.) The equations in the units b are those with every b = 1; then a product of powers
+//! (E. Buckingham, *Phys. Rev.* 4 (1914) 345.) Where no product of parameters has the unit of a coordinate, as of a mass on a linear
+//! spring, the size of the motion is a unit: any length serves, `x0` for the coordinate `x`. The equations in the units b are those with every b = 1; then a product of powers
 //! that always stands together is one group: an equation often depends on fewer numbers than the theorem allows. A group has the
 //! name of what it stands before: `zeta` (twice) a velocity, `alpha` its sign, `beta` an excitation, `eta` its frequency, `gamma`
 //! and `mu` a contact and its damping; any other is `Pi1`, `Pi2`, ...
@@ -27,8 +28,10 @@ pub struct Groups {
     pub parameters: usize,
     /// The rank of the matrix of their dimensions.
     pub rank: usize,
-    /// The parameters that give the units, one for each rank.
+    /// The parameters that give the units, one for each rank, and the sizes of the motion that do.
     pub units: Vec<Symbol>,
+    /// The coordinates of whose unit no product of parameters is, and the name of their size, which is a unit in its place.
+    pub sizes: Vec<(Symbol, Symbol)>,
     /// The sums of parameters that count as one, by the names that they have here.
     pub combinations: Vec<Combination>,
     /// The unit of time in them.
@@ -58,19 +61,9 @@ pub struct Group {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum NoGroups {
-    /// Nothing among the parameters has the dimension of a time.
+    /// Nothing among the parameters and the sizes of the motion has the dimension of a time.
     #[error("no product of powers of {0} is a time: the motion has no time of its own")]
     NoTime(String),
-    /// Nothing among the parameters has the dimension of a coordinate.
-    #[error(
-        "no product of powers of {parameters} has the unit of the coordinate `{coordinate}`: it has no size of its own"
-    )]
-    NoLength {
-        /// The coordinate.
-        coordinate: Symbol,
-        /// The parameters.
-        parameters: String,
-    },
     /// A step of algebra failed.
     #[error(transparent)]
     Expression(#[from] ExprError),
@@ -117,20 +110,26 @@ impl Groups {
             .into_iter()
             .filter(|name| equations.is_parameter(*name))
             .collect();
-        let dimension_of = |name: Symbol| units.get(&name).cloned().unwrap_or_default();
+        let known = units.clone();
+        let dimension_of = |name: Symbol| known.get(&name).cloned().unwrap_or_default();
         let inertia = combined(&equations.mass.concat())?;
         let stiffness = combined(std::slice::from_ref(&mechanism.potential))?;
-        let basis = Basis::of(&preferred(&inertia, &stiffness, &parameters), dimension_of);
+        let mut basis = Basis::of(&preferred(&inertia, &stiffness, &parameters), dimension_of);
+        let mut sizes = Vec::new();
+        for coordinate in &equations.coordinates {
+            let unit = dimension_of(*coordinate);
+            if basis.exponents(&unit).is_none() {
+                let taken: Vec<Symbol> = parameters.iter().chain(&equations.coordinates).copied().collect();
+                let size = fresh(&format!("{coordinate}0"), &taken);
+                basis.members.push((size, unit));
+                sizes.push((*coordinate, size));
+            }
+        }
         let time = basis.express(&Dimension::of([0, 0, 1]))?;
-        let names = || names(&parameters);
-        let time = time.ok_or_else(|| NoGroups::NoTime(names()))?;
+        let time = time.ok_or_else(|| NoGroups::NoTime(names(&parameters)))?;
         let mut lengths = Vec::new();
         for coordinate in &equations.coordinates {
-            let length = basis.express(&dimension_of(*coordinate))?;
-            lengths.push(length.ok_or_else(|| NoGroups::NoLength {
-                coordinate: *coordinate,
-                parameters: names(),
-            })?);
+            lengths.extend(basis.express(&dimension_of(*coordinate))?);
         }
         let mut scaling = Scaling {
             basis: &basis,
@@ -141,6 +140,7 @@ impl Groups {
                 .iter()
                 .copied()
                 .chain([Symbol::new("t")])
+                .chain(sizes.iter().map(|(_, size)| *size))
                 .collect(),
         };
         let ones: BTreeMap<Symbol, Expr> = basis.members.iter().map(|(name, _)| (*name, Expr::one())).collect();
@@ -156,6 +156,11 @@ impl Groups {
             scaling.groups.push((*name, Expr::from(*name), "as given".to_owned()));
         }
         scaling.collect(equations)?;
+        units.extend(
+            sizes
+                .iter()
+                .map(|(coordinate, size)| (*size, dimension_of(*coordinate))),
+        );
         let mut groups = Vec::new();
         let mut earlier: BTreeMap<Symbol, Expr> = BTreeMap::new();
         for (name, scaled, meaning) in &scaling.groups {
@@ -173,6 +178,7 @@ impl Groups {
             parameters: parameters.len(),
             rank: basis.members.len(),
             units: basis.members.iter().map(|(name, _)| *name).collect(),
+            sizes,
             combinations: equations.combinations.clone(),
             time,
             lengths,

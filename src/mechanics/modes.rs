@@ -6,16 +6,19 @@
 //!
 //! (L. Meirovitch, *Fundamentals of Vibrations*, 2001, sections 7.2 and 7.3.) M, C and K are exact; frequencies and shapes are
 //! numbers, by nalgebra, where every parameter has a value. Contacts, excitation and dry friction are left out: they are not linear.
+//! Excitation is what enters by sines and cosines of the time, in M, C and K alike; where they change with the time in another way,
+//! as those of a pendulum that lengthens do, there are no modes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
+use num_traits::Signed;
 use thiserror::Error;
 
 use super::combination::{put_into, written_out};
 use super::equilibrium::undriven;
 use super::{Combination, Equations, MechanicsError, Place, Rest, trigonometry::simplified};
-use crate::expr::{EvaluationError, Expr, ExprError, Function};
+use crate::expr::{EvaluationError, Expr, ExprError, Function, Node};
 use crate::symbol::Symbol;
 
 /// The linear equations near a place of rest.
@@ -29,6 +32,9 @@ pub struct Modes {
     pub stiffness: Vec<Vec<Expr>>,
     /// The coordinates that may be anywhere and on whose place the modes depend: they are taken at 0.
     pub taken_at_zero: Vec<Symbol>,
+    /// An entry of these matrices that changes with the time other than by sines and cosines: then they keep the time, and there are
+    /// no modes.
+    pub changing: Option<Expr>,
     /// The sums of parameters that enter as one: they cancel as one.
     combinations: Vec<Combination>,
 }
@@ -48,6 +54,12 @@ pub struct Mode {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum NoModes {
+    /// Coefficients that change with the time.
+    #[error(
+        "no small swings of a fixed frequency: the linear equations contain `{0}`, which changes with the time other than by sines and \
+         cosines of it; follow the motion by `lindstedt simulate`"
+    )]
+    Changing(Expr),
     /// A parameter without a value, or an expression that has none.
     #[error(transparent)]
     Evaluation(#[from] EvaluationError),
@@ -75,71 +87,23 @@ impl Modes {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn at(equations: &Equations, rest: &Rest) -> Result<Self, MechanicsError> {
-        let coordinates = &equations.coordinates;
-        let mut place = rest.values(coordinates);
-        let anywhere: Vec<Symbol> = coordinates
-            .iter()
-            .zip(&rest.places)
-            .filter_map(|(name, place)| (*place == Place::Anywhere).then_some(*name))
-            .collect();
-        for name in &anywhere {
-            place.remove(name);
-        }
-        let here = |expression: &Expr, place: &BTreeMap<Symbol, Expr>| simplified(&expression.substitute_all(place)?);
-        let mut forces = Vec::new();
-        for rest in &equations.rest {
-            let smooth = undriven(rest)?;
-            let smooth = smooth
-                .terms()
-                .iter()
-                .filter(|term| !term.contains_function(Function::Sign));
-            forces.push(smooth.cloned().sum::<Expr>());
-        }
-        let still = coordinates.iter().map(|name| (name.derivative(), Expr::zero()));
-        place.extend(still);
-        let slopes = |by: &dyn Fn(Symbol) -> Symbol| -> Result<Vec<Vec<Expr>>, ExprError> {
-            let row = |force: &Expr| {
-                let slope = |name: &Symbol| here(&force.differentiate(by(*name))?, &place);
-                coordinates.iter().map(slope).collect()
-            };
-            forces.iter().map(row).collect()
-        };
-        let row = |row: &Vec<Expr>| row.iter().map(|entry| here(entry, &place)).collect();
-        let mass: Result<Vec<Vec<Expr>>, ExprError> = equations.mass.iter().map(row).collect();
-        let mut matrices = [mass?, slopes(&|name| name.derivative())?, slopes(&|name| name)?];
-        let depends = |name: &Symbol| matrices.iter().flatten().flatten().any(|entry| entry.contains(*name));
-        let taken_at_zero: Vec<Symbol> = anywhere.into_iter().filter(depends).collect();
-        let zero: BTreeMap<Symbol, Expr> = taken_at_zero.iter().map(|name| (*name, Expr::zero())).collect();
-        for entry in matrices.iter_mut().flatten().flatten() {
-            *entry = here(entry, &zero)?;
-        }
-        let [mass, damping, stiffness] = matrices;
-        Ok(Self {
-            mass,
-            damping,
-            stiffness,
-            taken_at_zero,
-            combinations: equations.combinations.clone(),
-        })
+        Jacobians::new(equations)?.modes_at(equations, rest)
     }
 
     /// The names that still need a value.
     pub fn parameters(&self) -> BTreeSet<Symbol> {
         let matrices = [&self.mass, &self.damping, &self.stiffness];
-        matrices
-            .into_iter()
-            .flatten()
-            .flatten()
-            .flat_map(Expr::symbols)
-            .collect()
+        let names = matrices.into_iter().flatten().flatten().flat_map(Expr::symbols);
+        names.filter(|name| name.name() != "t").collect()
     }
 
-    /// omega^2 of one coordinate, as a formula; nothing for several.
+    /// omega^2 of one coordinate, as a formula; `None` for several, and where the equation changes with the time.
     ///
     /// # Errors
     /// A mass that vanishes there.
     pub fn square(&self) -> Result<Option<Expr>, ExprError> {
         match (self.mass.as_slice(), self.stiffness.as_slice()) {
+            _ if self.changing.is_some() => Ok(None),
             ([mass], [stiffness]) => {
                 let [stiffness, mass] = [&stiffness[0], &mass[0]].map(|entry| put_into(entry, &self.combinations));
                 let square = Expr::divide(&stiffness?, &mass?)?.expand()?;
@@ -154,6 +118,9 @@ impl Modes {
     /// # Errors
     /// [`NoModes`].
     pub fn numbers(&self, values: &BTreeMap<Symbol, f64>) -> Result<Vec<Mode>, NoModes> {
+        if let Some(changing) = &self.changing {
+            return Err(NoModes::Changing(changing.clone()));
+        }
         let matrix = |rows: &[Vec<Expr>]| -> Result<DMatrix<f64>, NoModes> {
             let mut numbers = Vec::new();
             for entry in rows.iter().flatten() {
@@ -184,6 +151,112 @@ impl Modes {
             false => Err(NoModes::NotFinite),
         }
     }
+}
+
+/// The derivatives of the equations with every velocity zero, by which they are linear: in the coordinates still, the same for all places
+/// of rest.
+pub(super) struct Jacobians {
+    /// Mass, damping and stiffness.
+    matrices: [Vec<Vec<Expr>>; 3],
+}
+
+impl Jacobians {
+    /// The derivatives of these equations, without contacts and dry friction.
+    ///
+    /// # Errors
+    /// Derivatives too long to be written out, or without a value at rest.
+    pub(super) fn new(equations: &Equations) -> Result<Self, MechanicsError> {
+        let coordinates = &equations.coordinates;
+        let velocities = || coordinates.iter().map(|name| name.derivative());
+        let still: BTreeMap<Symbol, Expr> = velocities().map(|name| (name, Expr::zero())).collect();
+        let (mut damping, mut stiffness) = (Vec::new(), Vec::new());
+        for rest in &equations.rest {
+            let written_out = rest.expand()?;
+            let has = |term: &Expr, function: Function| term.contains_function(function);
+            let smooth = written_out.terms().iter();
+            let smooth = smooth.filter(|term| !has(term, Function::Step) && !has(term, Function::Sign));
+            let force: Expr = smooth.cloned().sum();
+            let slope = |name: Symbol| force.differentiate(name)?.substitute_all(&still);
+            damping.push(velocities().map(slope).collect::<Result<_, ExprError>>()?);
+            let force = force.substitute_all(&still)?;
+            let slope = |name: &Symbol| force.differentiate(*name);
+            stiffness.push(coordinates.iter().map(slope).collect::<Result<_, ExprError>>()?);
+        }
+        Ok(Self {
+            matrices: [equations.mass.clone(), damping, stiffness],
+        })
+    }
+
+    /// The linear equations near a place of rest.
+    ///
+    /// # Errors
+    /// Entries too long to be written out, or without a value there.
+    pub(super) fn modes_at(&self, equations: &Equations, rest: &Rest) -> Result<Modes, MechanicsError> {
+        let coordinates = &equations.coordinates;
+        let mut place = rest.values(coordinates);
+        let anywhere: Vec<Symbol> = coordinates
+            .iter()
+            .zip(&rest.places)
+            .filter_map(|(name, place)| (*place == Place::Anywhere).then_some(*name))
+            .collect();
+        for name in &anywhere {
+            place.remove(name);
+        }
+        let here = |expression: &Expr, place: &BTreeMap<Symbol, Expr>| simplified(&expression.substitute_all(place)?);
+        let mut matrices = self.matrices.clone();
+        for entry in matrices.iter_mut().flatten().flatten() {
+            *entry = here(entry, &place)?;
+        }
+        let depends = |name: &Symbol| matrices.iter().flatten().flatten().any(|entry| entry.contains(*name));
+        let taken_at_zero: Vec<Symbol> = anywhere.into_iter().filter(depends).collect();
+        let zero: BTreeMap<Symbol, Expr> = taken_at_zero.iter().map(|name| (*name, Expr::zero())).collect();
+        let changing = changing(matrices.iter().flatten().flatten())?;
+        for entry in matrices.iter_mut().flatten().flatten() {
+            *entry = here(entry, &zero)?;
+            if changing.is_none() {
+                *entry = undriven(entry)?;
+            }
+        }
+        let [mass, damping, stiffness] = matrices;
+        Ok(Modes {
+            mass,
+            damping,
+            stiffness,
+            taken_at_zero,
+            changing,
+            combinations: equations.combinations.clone(),
+        })
+    }
+}
+
+/// The first term of these entries that changes with the time other than by sines and cosines of it.
+fn changing<'a>(entries: impl Iterator<Item = &'a Expr>) -> Result<Option<Expr>, ExprError> {
+    let time = Symbol::new("t");
+    let is_wave = |part: &Expr| match part.node() {
+        Node::Function(Function::Sin | Function::Cos, argument) => argument
+            .iter()
+            .all(|phase| phase.differentiate(time).is_ok_and(|rate| !rate.contains(time))),
+        _ => false,
+    };
+    // Products of waves and of their powers are sums of waves; roots and quotients are not.
+    let is_wavy = |factor: &Expr| {
+        let (base, exponent) = factor.base_and_exponent();
+        let is_whole = exponent
+            .as_number()
+            .is_some_and(|power| power.is_integer() && !power.is_negative());
+        !factor.contains(time) || is_whole && is_wave(&base)
+    };
+    for entry in entries {
+        let written_out = entry.expand()?;
+        let term = written_out
+            .terms()
+            .iter()
+            .find(|term| !term.factors().1.iter().all(is_wavy));
+        if let Some(term) = term {
+            return Ok(Some(term.clone()));
+        }
+    }
+    Ok(None)
 }
 
 /// A value that is rounding beside the largest is none.

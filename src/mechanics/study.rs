@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
+use super::modes::Jacobians;
 use super::paper::{self, Finding, PaperError};
 use super::{
     Dimension, Drive, Equations, Groups, MechanicsError, Mechanism, Mode, Modes, NoGroups, NoModes, Rest, UnitError,
@@ -117,9 +118,10 @@ pub fn study(question: MechanismQuestion) -> Result<MechanismStudy, StudyError> 
         mechanism.check_units(units)?;
         equations.check_units(&mechanism.all_units(units))?;
     }
+    let jacobians = Jacobians::new(&equations)?;
     let mut rests = Vec::new();
     for rest in equilibria(&equations)? {
-        let modes = Modes::at(&equations, &rest)?;
+        let modes = jacobians.modes_at(&equations, &rest)?;
         // A place that needs a cosine beyond 1 is none for these values.
         let exists = rest.condition.as_ref().is_none_or(|cosine| {
             let value = cosine.evaluate(&question.values);

@@ -319,11 +319,23 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
     }
 }
 
+/// The square root of a product as a number times one root, of pi among its factors: `sqrt(6*pi)/2` for 3 pi/2.
+fn single_root(product: &Expr) -> Result<Expr, ExprError> {
+    let (number, factors) = product.factors();
+    // sqrt(p/q) = sqrt(p q)/q, and sqrt(p q) is a number times the root of one without squares.
+    let over = Rational::from_integer(number.denom().clone());
+    let root = Expr::number(&number * &over * &over).sqrt()?;
+    let (outside, roots) = root.factors();
+    let inside = roots.iter().map(|root| root.base_and_exponent().0);
+    let root = Expr::product(inside.chain(factors.iter().cloned())).sqrt()?;
+    Ok(Expr::number(outside / over) * root)
+}
+
 /// `sqrt(pi c (n+1)/2) A^((n-1)/2) Gamma(1/2 + 1/(n+1))/Gamma(1/(n+1))`.
 pub(super) fn of_power(coefficient: &Expr, n: &Expr) -> Result<Expr, ExprError> {
     let gamma = |argument: Expr| Expr::function(Function::Gamma, vec![argument]);
     let next = n + &Expr::one();
-    let scale = Expr::pi().sqrt()? * (coefficient * &Expr::divide(&next, &Expr::from(2))?).sqrt()?;
+    let scale = single_root(&(Expr::pi() * (coefficient * &Expr::divide(&next, &Expr::from(2))?)))?;
     let half_of_last = Expr::divide(&(n - &Expr::one()), &Expr::from(2))?;
     let amplitude = Expr::power(&Expr::symbol("A"), &half_of_last)?;
     let inverse = Expr::divide(&Expr::one(), &next)?;

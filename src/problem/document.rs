@@ -176,7 +176,7 @@ pub struct MaterialSection {
     pub lambda: Option<f64>,
     /// The same by its coefficient of restitution.
     pub restitution: Option<f64>,
-    /// The speed at which that holds, in units of L omega; without it that of the first touch without damping.
+    /// The speed at which that holds, m/s; without it that of the first touch without damping.
     pub at_speed: Option<f64>,
     /// c of F = (k + c d') d^(3/2), N s/m^(5/2).
     pub damping: Option<f64>,
@@ -372,7 +372,8 @@ pub struct Contact {
     pub mu_over_gamma: Option<f64>,
     /// The coefficient of restitution, in place of mu.
     pub restitution: Option<f64>,
-    /// The speed at which that holds, in units of L omega; without it that of the first touch without damping.
+    /// The speed at which that holds, in m/s where the file gives any number in SI units (a mass, a length, a modulus, `lambda`,
+    /// `viscous` ..), otherwise in units of L omega; without it that of the first touch without damping.
     pub at_speed: Option<f64>,
     /// c of F = (k + c d') d^(3/2), N s/m^(5/2), in place of mu.
     pub damping: Option<f64>,

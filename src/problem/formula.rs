@@ -122,7 +122,17 @@ impl Problem {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn values_of_motion(&self) -> Result<Values, ProblemError> {
-        let (_, others) = self.exact_values()?.split(&self.cancelled);
+        self.values_with(&[])
+    }
+
+    /// As [`Problem::values_of_motion`], and those of `needed` too, such as a mass without which there is no energy in numbers.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn values_with(&self, needed: &[Symbol]) -> Result<Values, ProblemError> {
+        let idle = self.cancelled.iter().filter(|name| !needed.contains(name));
+        let idle: Vec<Symbol> = idle.copied().collect();
+        let (_, others) = self.exact_values()?.split(&idle);
         Ok(others)
     }
 }

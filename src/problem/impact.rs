@@ -7,7 +7,7 @@ use crate::expr::{Expr, ParseError, parse_expression};
 use crate::impact::contact::{ContactLaw, UnknownContactLaw};
 use crate::impact::hertz::{Design, NotPositive};
 use crate::impact::{
-    CollisionError, ContactDamping, ContactLoss, ContactScales, DampingError, Rule, Setup, Side, UnknownRule,
+    CollisionError, ContactDamping, ContactLoss, ContactScales, DampingError, Rule, Setup, Side, SpeedUnit, UnknownRule,
 };
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::solution::{AmplitudeConvention, Method};
@@ -431,6 +431,7 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Impact
     let needed: &[(&'static str, f64)] = match key {
         "lambda" => &[("length", length), ("gravity", gravity)],
         "damping" => &[("mass", mass), ("length", length), ("gravity", gravity)],
+        _ if problem.speed_unit(&[]) == SpeedUnit::MetresPerSecond => &[("length", length), ("gravity", gravity)],
         _ => &[],
     };
     let none = |value: &f64| !(value.is_finite() && *value > 0.0);
@@ -442,7 +443,9 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Impact
         mass,
         length,
         gravity,
-        speed: contact.at_speed,
+        speed: contact
+            .at_speed
+            .map(|speed| problem.speed_unit(&[]).dimensionless(speed, length, gravity)),
     };
     let Some(damping) = contact.given_damping() else {
         return Ok(None);

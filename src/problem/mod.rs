@@ -29,8 +29,8 @@ mod trajectory;
 use std::str::FromStr;
 
 use crate::expr::ParseError;
-use crate::impact::UnknownRule;
 use crate::impact::hertz::{Design, NotPositive};
+use crate::impact::{Parameter, SpeedUnit, UnknownRule};
 use crate::values::ValueError;
 
 pub use design::DesignError;
@@ -141,6 +141,43 @@ impl Problem {
         in_si.iter().any(Option::is_some)
     }
 
+    /// The unit of `at_speed`: m/s where the file gives any of its numbers in SI units, or one of the `swept` ones is.
+    fn speed_unit(&self, swept: &[Parameter]) -> SpeedUnit {
+        use Parameter::{ContactDamping, Gravity, Lambda, Length, Mass, Modulus, Radius, Torque, Viscous};
+        let of_pendulum = self.equation.is_none() && self.contact.force.is_none();
+        let sections = [
+            "[design]",
+            "[sphere]",
+            "[barrier]",
+            "[limits]",
+            "[pendulum] mass",
+            "[pendulum] length",
+            "[pendulum] gravity",
+        ];
+        let gives = |section: &str| self.given.iter().any(|key| key.starts_with(section));
+        let by_sections = sections.into_iter().any(gives) || !self.material.is_empty();
+        let parameters = [
+            Lambda,
+            ContactDamping,
+            Viscous,
+            Torque,
+            Mass,
+            Radius,
+            Length,
+            Modulus,
+            Gravity,
+        ];
+        let by_parameters = || {
+            parameters
+                .into_iter()
+                .any(|key| swept.contains(&key) || self.gives_parameter(key))
+        };
+        match of_pendulum && (by_sections || by_parameters()) {
+            true => SpeedUnit::MetresPerSecond,
+            false => SpeedUnit::RadOmega,
+        }
+    }
+
     /// Where the stiffness of the contact comes from, with this design.
     fn stiffness_source(&self, design: &Design) -> &'static str {
         if self.contact.gamma.is_none() {
@@ -149,11 +186,12 @@ impl Problem {
                 false => "equation (8) with the given design and l = L",
             };
         }
-        let without_say: &[&str] = match (self.damps_in_si_units(), self.contact.lambda) {
+        let by_length = self.contact.lambda.is_some() || self.contact.at_speed.is_some();
+        let without_say: &[&str] = match (self.damps_in_si_units(), by_length) {
             (true, _) => &["radius", "modulus", "poisson"],
-            // mu = gamma*lambda*sqrt(g*L)
-            (false, Some(_)) => &["mass", "radius", "modulus", "poisson"],
-            (false, None) => &["mass", "radius", "modulus", "poisson", "length", "gravity"],
+            // mu = gamma*lambda*sqrt(g*L), and v/sqrt(g*L) for a speed in m/s
+            (false, true) => &["mass", "radius", "modulus", "poisson"],
+            (false, false) => &["mass", "radius", "modulus", "poisson", "length", "gravity"],
         };
         let gives = |sections: &[&str]| {
             let mut keys = without_say

@@ -150,7 +150,8 @@ impl Problem {
         }
         self.check_keys(Reader::Simulate)?;
         refuse_two_forms(gives)?;
-        let case = self.case()?;
+        let mut case = self.case()?;
+        case.speed_unit = self.speed_unit(swept);
         let settings = self.settings()?;
         self.check_side(swept)?;
         self.check_pairs(gives)?;
@@ -216,6 +217,7 @@ impl Problem {
             gamma: self.contact.gamma,
             contact_damping: self.contact.given_damping().unwrap_or(ContactDamping::Mu(0.0)),
             at_speed: self.contact.at_speed,
+            speed_unit: self.speed_unit(&[]),
             zeta: self.damping.zeta,
             viscous: self.damping.viscous,
             alpha: self.damping.alpha,
@@ -262,6 +264,7 @@ impl Problem {
             !zero(Viscous, self.damping.viscous) || !zero(Torque, self.damping.torque) || self.primary.is_some();
         // c = mu*m*sqrt(g)/L^2
         let in_si = swing_in_si || !zero(Coefficient, self.contact.damping);
+        let at_speed_in_si = self.contact.at_speed.is_some() || swept.contains(&AtSpeed);
         let of_contact = |key: &Parameter| match key {
             Gamma | Mu | MuOverGamma | Lambda | Restitution | AtSpeed | Coefficient | Radius | Modulus => true,
             Mass | Length | Gravity => !swing_in_si,
@@ -298,8 +301,8 @@ impl Problem {
         let without_say = |parameter: &Parameter| match parameter {
             Radius | Modulus => true,
             Mass => !in_si,
-            // mu = gamma*lambda*sqrt(g*L)
-            Length | Gravity => !in_si && zero(Lambda, self.contact.lambda),
+            // mu = gamma*lambda*sqrt(g*L), and v/sqrt(g*L) for a speed in m/s
+            Length | Gravity => !in_si && !at_speed_in_si && zero(Lambda, self.contact.lambda),
             _ => false,
         };
         match swept.iter().copied().find(without_say).filter(|_| gives(Gamma)) {

@@ -1,7 +1,7 @@
 //! An audit: a table of verdicts, and of every claim that is not simply reproduced what speaks for its verdict.
 
 use super::{Block, Document, Heading};
-use crate::audit::{Audit, Computed, Finding, Lack, Stated, Tried, Verdict};
+use crate::audit::{ABSENT, Audit, Computed, Finding, Lack, Stated, Tried, Verdict};
 use crate::decimal::{decimal, significant};
 
 /// The document of an audit.
@@ -154,6 +154,7 @@ pub(crate) fn entry(finding: &Finding, tried: &Tried, index: usize) -> Option<St
     match tried.computed.get(index)? {
         Ok(Computed::Number(number)) => Some(alike(*number)),
         Ok(Computed::Exact(fraction)) => Some(fraction.to_string()),
+        Ok(Computed::Absent) => Some(ABSENT.to_owned()),
         Ok(Computed::Formula(formula)) => Some(formula.to_string()),
         Ok(Computed::Conflicts(conflicts)) => Some(match conflicts.len() {
             0 => "no conflict".to_owned(),

@@ -4,7 +4,8 @@
 use super::{Block, Document, Heading};
 use crate::decimal::{decimal, significant};
 use crate::impact::{
-    ContactDamping, HeldFixed, Integrator, MaterialRow, MaterialStudy, Model, Parameter, REST_FRACTION, YieldCheck,
+    ContactDamping, Dissipation, HeldFixed, Integrator, MaterialRow, MaterialStudy, Model, Parameter, REST_FRACTION,
+    YieldCheck,
 };
 
 /// Below this part of the rest time materials rest at the same time, for what an engineer decides by it.
@@ -86,10 +87,7 @@ fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
     let default = ", by default: the paper prints none";
     let said = |parameter| if is_default(parameter) { default } else { "" };
     let damping = study.question.case.contact_damping;
-    let at = match study.dissipation.at_speed {
-        Some(speed) => format!(" at the speed {}", decimal(speed)),
-        None => String::new(),
-    };
+    let at = at_speed(&study.dissipation);
     blocks.push(Block::Note(format!(
         "held fixed: {}{at}{}",
         in_words(damping),
@@ -147,6 +145,12 @@ pub(super) fn chosen(given: Parameter, forms: [(Parameter, Option<f64>, &str); 2
         }
         _ => format!("held fixed: {}", given.name()),
     }
+}
+
+/// ` at the speed 1 m/s, 1.22347 rad*omega`; empty where no speed is stated.
+fn at_speed(dissipation: &Dissipation) -> String {
+    let speed = dissipation.at_speed_in_words();
+    speed.map_or(String::new(), |speed| format!(" at the speed {speed}"))
 }
 
 /// `lambda = 0.122347 s/m`
@@ -276,10 +280,7 @@ fn until_rest(study: &MaterialStudy) -> Vec<Block<'_>> {
     }
     let own = study.rows.iter().filter_map(|row| {
         let damping = row.material.damping?;
-        let at = match row.dissipation.at_speed {
-            Some(speed) => format!(" at the speed {}", decimal(speed)),
-            None => String::new(),
-        };
+        let at = at_speed(&row.dissipation);
         Some(format!(
             "{} has its own damping: {}{at}",
             row.material.name,

@@ -7,7 +7,7 @@ use crate::decimal::decimal;
 use crate::derivation::Line;
 use crate::expr::{Expr, Function};
 use crate::mechanics::paper::Finding;
-use crate::mechanics::{Drive, Groups, MechanismStudy, Mode, NoGroups, Place, RestStudy};
+use crate::mechanics::{Drive, Groups, MechanismStudy, Mode, NoGroups, NoModes, Place, RestStudy};
 use crate::symbol::Symbol;
 
 /// The document of a study of a mechanism.
@@ -87,7 +87,10 @@ fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
     let has = |function: Function| study.equations.rest.iter().any(|rest| rest.contains_function(function));
     let driven = study.equations.rest.iter().any(|rest| rest.contains(Symbol::new("t")));
     let vanishes = !study.rests.is_empty() && study.rests.iter().all(|rest| rest.drive == Drive::Vanishes);
-    if vanishes && !has(Function::Step) {
+    let changes = study.rests.iter().any(|rest| rest.modes.changing.is_some());
+    if vanishes && changes && !has(Function::Step) {
+        blocks.push(Block::Note("at rest there with the terms in t, too".to_owned()));
+    } else if vanishes && !has(Function::Step) {
         blocks.push(Block::Note(
             "at rest there with the terms in t, too; the swings are those without them, which may hold what falls and shake loose what rests"
                 .to_owned(),
@@ -120,7 +123,10 @@ fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
                     .map(|mode| Block::Note(format!("  {}", mode_in_words(mode, coordinates, unpulled)))),
             ),
             Some(Err(error)) => blocks.push(Block::Note(format!("  {error}"))),
-            None => {}
+            None => blocks.extend(rest.modes.changing.clone().map(|changing| {
+                let why = NoModes::Changing(changing);
+                Block::Note(format!("  {why}"))
+            })),
         }
     }
     let missing: std::collections::BTreeSet<Symbol> = study
@@ -141,7 +147,7 @@ fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
         };
         blocks.push(Block::Note(format!("at {}{wanting}", values.join(", "))));
     }
-    let has_numbers = study.rests.iter().any(|rest| rest.numbers.is_some());
+    let has_numbers = study.rests.iter().any(|rest| rest.numbers.is_some()) || changes;
     if coordinates.len() > 1 && !study.rests.is_empty() && !has_numbers && study.question.values.is_empty() {
         blocks.push(Block::Note(
             "with values for every parameter come the frequencies and shapes of the modes".to_owned(),
@@ -206,13 +212,18 @@ fn no_groups(error: &NoGroups) -> String {
 fn dimensionless<'a>(groups: &'a Groups, study: &'a MechanismStudy) -> Vec<Block<'a>> {
     let coordinates = &study.equations.coordinates;
     let names: Vec<&str> = groups.units.iter().map(|name| name.name()).collect();
-    let most = groups.parameters - groups.rank;
+    let most = groups.parameters + groups.sizes.len() - groups.rank;
     let found = groups.groups.len();
     let mut blocks = vec![
         checked(),
         Block::Sentence(format!(
-            "{} parameters of {} independent dimension{}: {}. Units: {}.",
+            "{} parameters{} of {} independent dimension{}: {}. Units: {}.",
             groups.parameters,
+            match groups.sizes.len() {
+                0 => "",
+                1 => " and the size of the motion,",
+                _ => " and the sizes of the motion,",
+            },
             groups.rank,
             if groups.rank == 1 { "" } else { "s" },
             match (most, found) {
@@ -241,6 +252,15 @@ fn dimensionless<'a>(groups: &'a Groups, study: &'a MechanismStudy) -> Vec<Block
         .filter(|(_, length)| !length.is_one())
     {
         blocks.push(Block::Note(format!("{coordinate} in units of {length}")));
+    }
+    for (coordinate, size) in &groups.sizes {
+        let depends = match groups.time.contains(*size) {
+            true => "its time grows and shrinks with that",
+            false => "the equations are the same for each",
+        };
+        blocks.push(Block::Note(format!(
+            "no product of the parameters has the unit of {coordinate}: {size} is any size of it, such as that at the start, and {depends}"
+        )));
     }
     for group in &groups.groups {
         let line = match group.definition.as_symbol() == Some(group.name) {

@@ -213,10 +213,10 @@ fn held_fixed<'a>(question: &Question) -> Vec<Block<'a>> {
         blocks.push(Block::Note(format!(
             "held fixed: {}{}{}",
             in_words(damping),
-            question
-                .case
-                .at_speed
-                .map_or(String::new(), |speed| format!(" at the speed {}", decimal(speed))),
+            question.case.at_speed.map_or(String::new(), |speed| {
+                let unit = question.case.speed_unit.name();
+                format!(" at the speed {} {unit}", decimal(speed))
+            }),
             said(damping.form())
         )));
     }

@@ -265,6 +265,21 @@ fn account<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
             format!("{} of the largest", significant(balance.residual, 2)),
         ));
     }
+    let unknown: Vec<String> = motion
+        .course
+        .missing_for_energy()
+        .iter()
+        .map(|name| format!("`{name}`"))
+        .collect();
+    if !unknown.is_empty() {
+        facts.push((
+            "energy",
+            format!(
+                "not accounted for without a value for {}, which cancels in the equations of motion",
+                unknown.join(", ")
+            ),
+        ));
+    }
     if let Some(known) = report.known_until {
         let beyond = match motion.course.section {
             Some(_) => "; the section beyond is that of motions nearby",

@@ -187,6 +187,7 @@ pub fn compare(
     // Every row has the motion that starts at A, whatever its formula measures.
     let at_first = by_start(first, at);
     let numbers = checked_numbers(first, &at_first)?;
+    super::check_digits(oscillator, first, &numbers)?;
     let meant = meant(oscillator, first, &numbers);
     let (true_motion, reason) = match super::true_motion(oscillator, first, &meant, &numbers) {
         Ok(motion) => (Some(motion), None),

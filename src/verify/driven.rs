@@ -292,6 +292,7 @@ pub(super) fn judge(
         judged_on: "amplitude",
         error_of_omega: None,
         max_deviation: judged.and_then(|judged| judged.max_deviation),
+        no_deviation: None,
         residual: moving.and_then(|judged| question.residual(judged.state)),
         slope: moving.and_then(|judged| slope(oscillator, &question, judged)),
         over_several_wells: false,

@@ -48,7 +48,7 @@ use crate::conservative::force::Force;
 use crate::decimal::{decimal, significant};
 use crate::exact::Doubles;
 use crate::exact::rational::from_f64;
-use crate::expr::{EvaluationError, Expr, ExprError};
+use crate::expr::{EvaluationError, Expr, ExprError, LostDigits};
 use crate::method::numbers::{
     Known, NoNumbers, Numbers, evaluate, frequency_squared_along, half_a_period, law_name, symbol_values,
 };
@@ -108,6 +108,8 @@ pub struct Verification {
     pub error_of_omega: Option<f64>,
     /// Largest deviation over one true period, as a part of the amplitude.
     pub max_deviation: Option<f64>,
+    /// Why there is none, where the true motion has a period and no path that Runge-Kutta follows.
+    pub no_deviation: Option<String>,
     /// Root mean square of the equation's residual along the formula, over that of its force.
     pub residual: Option<f64>,
     /// Measured exponent of the frequency error; of a motion followed from its start that of `max_deviation`, over times that grow as
@@ -179,6 +181,9 @@ pub enum VerificationError {
         /// The names that do occur.
         known: Vec<Symbol>,
     },
+    /// An amplitude so large that the force has no digits there.
+    #[error(transparent)]
+    LostDigits(#[from] LostDigits),
     /// The equation has no motion to compare with at these values.
     #[error(transparent)]
     Period(#[from] PeriodError),
@@ -355,11 +360,13 @@ pub(crate) fn judge_to(
     let settled = on_cycle(solution, at);
     if let (Some(slow), None) = (solution.slow(), &settled) {
         let numbers = checked_numbers(solution, at)?;
+        check_digits(oscillator, solution, &numbers)?;
         return transient::judge(oscillator, solution, slow, at, &numbers, tolerance);
     }
     periodic(settled.as_ref().unwrap_or(solution))?;
     let numbers = checked_numbers(solution, at)?;
     let solution = settled.as_ref().unwrap_or(solution);
+    check_digits(oscillator, solution, &numbers)?;
     let meant = meant(oscillator, solution, &numbers);
     let truth = meant_motion(oscillator, solution, &meant, &numbers)?;
     let (found, reason) = numbers_or_reason(oscillator, solution, &numbers);
@@ -401,13 +408,13 @@ pub(crate) fn judge_to(
         judged_on: law_name(solution),
         error_of_omega: series_of_omega(solution, &numbers).map(|omega| omega / truth.frequency - 1.0),
         max_deviation,
+        no_deviation: unfollowed(&truth, &physics, solution.coordinate()).filter(|_| motion.is_some()),
         residual: residual.filter(|value| value.is_finite()),
         slope: ranged.then(|| slope(oscillator, solution, &numbers)).flatten(),
         over_several_wells: validity::is_over_several_wells(oscillator, solution, &numbers),
         ranges: about_the_cycle(&truth, solution.coordinate())
             .filter(|_| attraction(solution, &numbers) != Some(0.0))
             .into_iter()
-            .chain(unfollowed(&truth, &physics, solution.coordinate()).filter(|_| motion.is_some()))
             .chain(remark)
             .chain(far)
             .collect(),
@@ -520,6 +527,34 @@ fn amplitude_symbol(solution: &Solution) -> Symbol {
 /// Missing or unknown values, or an amplitude of zero.
 pub fn checked(solution: &Solution, at: &Values) -> Result<(), VerificationError> {
     checked_numbers(solution, at).map(|_| ())
+}
+
+/// Refuses an amplitude at which the force has no digits left. The distance from the equilibrium counts, which is exact where the
+/// equilibrium is.
+///
+/// # Errors
+/// [`LostDigits`].
+fn check_digits(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<(), VerificationError> {
+    let coordinate = oscillator.coordinate;
+    let Some(amplitude) = numbers.get(&amplitude_symbol(solution)).copied() else {
+        return Ok(());
+    };
+    let moved = Expr::from(coordinate) + solution.equilibrium.clone();
+    let Ok(force) = oscillator.force.substitute(coordinate, &moved) else {
+        return Ok(());
+    };
+    let mut there = numbers.clone();
+    there.insert(coordinate, amplitude);
+    there.extend([oscillator.velocity(), Symbol::new("t")].map(|name| (name, 0.0)));
+    let of_amplitude = |lost: LostDigits| LostDigits {
+        name: amplitude_symbol(solution),
+        ..lost
+    };
+    Ok(force.check_digits(&there, &[coordinate]).map_err(of_amplitude)?)
 }
 
 /// The values as numbers.
@@ -802,8 +837,8 @@ fn about_the_cycle(truth: &TrueMotion, coordinate: Symbol) -> Option<validity::R
     })
 }
 
-/// That the displacement is not judged, where the true path is not known.
-fn unfollowed(truth: &TrueMotion, physics: &Physics, coordinate: Symbol) -> Option<validity::Range> {
+/// Why the displacement is not judged, where the true path is not known.
+fn unfollowed(truth: &TrueMotion, physics: &Physics, coordinate: Symbol) -> Option<String> {
     if truth.has_path() {
         return None;
     }
@@ -814,10 +849,7 @@ fn unfollowed(truth: &TrueMotion, physics: &Physics, coordinate: Symbol) -> Opti
         ),
         false => String::new(),
     };
-    Some(validity::Range {
-        text: format!("the displacement is not judged: Runge-Kutta does not follow the true motion{why}"),
-        outside: false,
-    })
+    Some(format!("Runge-Kutta does not follow the true motion{why}"))
 }
 
 /// Largest `|x_true - x_formula|` over one true period, over the amplitude; `None` where the path is not known.

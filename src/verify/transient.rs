@@ -113,6 +113,7 @@ pub(super) fn judge(
         judged_on: "omega",
         error_of_omega: None,
         max_deviation: errors.deviation,
+        no_deviation: None,
         residual: judged.residual(oscillator, numbers),
         slope: slopes.deviation,
         over_several_wells: false,

@@ -427,6 +427,86 @@ fn a_swing_and_a_barrier_of_the_users_own() {
     assert!((doubled.truth.period / found.truth.period - 1.0).abs() < 1e-12);
 }
 
+/// A contact force that is a difference of nearly equal numbers near the touch: the energy of its Taylor series, which cancels
+/// nowhere, is taken up at the greatest depth, from soft barriers to hard ones.
+#[test]
+fn a_force_that_is_a_difference_near_the_touch_keeps_its_digits() {
+    /// Coefficient and power of the depth of the n-th term of a force over k, or nothing where that is the last one.
+    type Term = fn(u32) -> (f64, f64);
+    fn over_factorial(n: u32) -> f64 {
+        (1..=n).map(f64::from).map(f64::recip).product()
+    }
+    fn alternating(n: u32) -> f64 {
+        if n % 2 == 0 { 1.0 } else { -1.0 }
+    }
+    fn binomial(n: u32) -> f64 {
+        (0..n).map(|j| (0.5 - f64::from(j)) / f64::from(j + 1)).product()
+    }
+    let forces: [(&str, Term); 11] = [
+        ("k*(exp(20*d) - 1)", |n| {
+            (20.0_f64.powi(n as i32 + 1) * over_factorial(n + 1), f64::from(n + 1))
+        }),
+        ("k*(1 - cos(d))", |n| {
+            (alternating(n) * over_factorial(2 * n + 2), f64::from(2 * n + 2))
+        }),
+        ("k*(cosh(d) - 1)", |n| (over_factorial(2 * n + 2), f64::from(2 * n + 2))),
+        ("k*((1 + d)^3 - 1)", |n| {
+            (
+                [3.0, 3.0, 1.0].get(n as usize).copied().unwrap_or(0.0),
+                f64::from(n + 1),
+            )
+        }),
+        ("k*(exp(d) - 1 - d)", |n| (over_factorial(n + 2), f64::from(n + 2))),
+        ("k*(d - sin(d))", |n| {
+            (alternating(n) * over_factorial(2 * n + 3), f64::from(2 * n + 3))
+        }),
+        ("k*(exp(d^(3/2)) - 1)", |n| {
+            (over_factorial(n + 1), 1.5 * f64::from(n + 1))
+        }),
+        ("k*(cosh(sqrt(d)) - 1)", |n| {
+            (over_factorial(2 * n + 2), f64::from(n + 1))
+        }),
+        ("k*(sqrt(d + d^2) - sqrt(d))", |n| (binomial(n + 1), f64::from(n) + 1.5)),
+        ("k*(1 - cos(d))/d", |n| {
+            (alternating(n) * over_factorial(2 * n + 2), f64::from(2 * n + 1))
+        }),
+        ("k*(exp(d) - 1 - d - d^2/2 - d^3/6)", |n| {
+            (over_factorial(n + 4), f64::from(n + 4))
+        }),
+    ];
+    let energy = 0.323_f64.cos() - 1.5_f64.cos();
+    for (text, term) in forces {
+        for stiffness in ["1e3", "1e7"] {
+            let found = impact::solve(Setup {
+                values: format!("k = {stiffness}").parse().unwrap(),
+                force: Some(parse_expression(text).unwrap()),
+                ..Setup::default()
+            });
+            let found = found.unwrap_or_else(|error| panic!("{text}, k = {stiffness}: {error}"));
+            let depth = found.truth.penetration;
+            let taken_up = |depth: f64| {
+                let terms = (0..60).map(term);
+                let sum: f64 = terms
+                    .map(|(c, power)| c * depth.powf(power + 1.0) / (power + 1.0))
+                    .sum();
+                stiffness.parse::<f64>().unwrap() * sum + 2.0 * (0.5 * depth).sin() * (0.323 + 0.5 * depth).sin()
+            };
+            let left = taken_up(depth) / energy - 1.0;
+            assert!(left.abs() < 1e-8, "{text}, k = {stiffness}: {left:e}");
+            let derived = found.column(Reading::Derived).unwrap();
+            let phases = [
+                taken_up(derived.phases.penetration) / energy - 1.0,
+                derived.phases.duration / found.truth.duration - 1.0,
+            ];
+            // As closely as the swing of the derived column knows the speed of touch.
+            assert!(
+                phases.iter().all(|error| error.abs() < 1e-3),
+                "{text}, k = {stiffness}: {phases:?}"
+            );
+        }
+    }
+}
+
 /// The table of `docs/impact.md` is what is computed.
 #[test]
 fn the_page_says_what_is_computed() {

@@ -275,11 +275,17 @@ fn a_force_like_one_over_x_has_its_period() {
             assert_eq!(judged.verdict, Verdict::Pass);
             // Nobody follows the path: nothing is said of it, and that is said.
             assert_eq!((judged.max_deviation, judged.residual), (None, None));
-            let said = judged
-                .ranges
-                .iter()
-                .any(|range| range.text.contains("displacement is not judged"));
-            assert!(said, "{equation}");
+            let reason = judged.no_deviation.as_deref().unwrap_or_default();
+            assert!(
+                reason.contains("does not follow the true motion"),
+                "{equation}: {reason}"
+            );
+            // No range speaks of a displacement that there is not.
+            let ranges = judged.ranges.iter();
+            assert!(
+                ranges.clone().all(|range| !range.text.contains("displacement")),
+                "{equation}"
+            );
         }
     }
 }

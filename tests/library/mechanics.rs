@@ -607,6 +607,134 @@ fn corners_of_mechanisms() {
     assert_eq!(equilibria(&duffing).unwrap()[0].places, [Place::At(Expr::zero())]);
 }
 
+/// What changes with the time other than by sines and cosines has no modes; what a drive adds is left out of inertia, damping and
+/// stiffness alike.
+#[test]
+fn a_mechanism_that_changes_with_the_time_has_no_modes() {
+    let hanging = |kinetic: &str, potential: &str| {
+        let equations = Mechanism::parse(&["x"], kinetic, potential)
+            .unwrap()
+            .equations()
+            .unwrap();
+        let rest = equilibria(&equations).unwrap().swap_remove(0);
+        Modes::at(&equations, &rest).unwrap()
+    };
+    let numbers: BTreeMap<Symbol, f64> = ["m", "L", "g", "v", "a", "k", "c", "W"]
+        .map(|name| (Symbol::new(name), 1.5))
+        .into();
+    for (kinetic, potential) in [
+        ("m*(L + v*t)^2*x'^2/2", "-m*g*(L + v*t)*cos(x)"),
+        ("m*L^2*exp(c*t)*x'^2/2", "-m*g*L*exp(c*t)*cos(x)"),
+        ("m*x'^2/2", "k*exp(-c*t)*x^2/2"),
+        ("m*x'^2/2", "k*(1 + v*t)*x^2/2"),
+        ("m*x'^2/2", "k*x^2/2/(L + a*cos(W*t))"),
+        ("(m + v*t)*x'^2/2", "k*x^2/2"),
+        ("m*x'^2/2", "k*x^2*sqrt(1 + t^2)/2"),
+    ] {
+        let modes = hanging(kinetic, potential);
+        assert!(modes.changing.is_some(), "{kinetic}, {potential}");
+        assert_eq!(modes.square().unwrap(), None, "{kinetic}, {potential}");
+        let reason = modes.numbers(&numbers).unwrap_err().to_string();
+        assert!(reason.contains("changes with the time"), "{reason}");
+    }
+    // omega^2 of the mechanism with its drive at rest, whether that shakes the pivot or the length.
+    for (kinetic, potential, square) in [
+        ("m*(L + a*cos(W*t))^2*x'^2/2", "-m*g*(L + a*cos(W*t))*cos(x)", "g/L"),
+        ("m*(L^2*x'^2 - 2*a*W*L*x'*sin(W*t)*sin(x))/2", "-m*g*L*cos(x)", "g/L"),
+        ("m*x'^2/2", "k*(1 + a*sin(W*t)^2)*x^2/2", "k/m"),
+        ("m*x'^2/2", "k*(x - a*sin(W*t))^2/2", "k/m"),
+    ] {
+        let modes = hanging(kinetic, potential);
+        assert_eq!(modes.changing, None, "{kinetic}, {potential}");
+        assert_same(&modes.square().unwrap().expect("one coordinate"), &expression(square));
+    }
+}
+
+/// A mass on a linear spring has no length of its own: its size is a unit, and the equations do not depend on it; that of a cubic
+/// spring sets the time.
+#[test]
+fn groups_need_no_length_among_the_parameters() {
+    let groups = |kinetic: &str, potential: &str, dissipation: &str, own: &[(&str, &str)]| {
+        let mut mechanism = Mechanism::parse(&["x"], kinetic, potential).unwrap();
+        mechanism.dissipation = expression(dissipation);
+        let units: BTreeMap<Symbol, Dimension> = own
+            .iter()
+            .map(|(name, unit)| (Symbol::new(name), unit.parse().expect("a unit")))
+            .collect();
+        mechanism.check_units(&units).unwrap();
+        Groups::of(&mechanism, &mechanism.equations().unwrap(), &units).unwrap()
+    };
+    let linear = [
+        ("x", "m"),
+        ("m", "kg"),
+        ("k", "N/m"),
+        ("c", "N*s/m"),
+        ("b", "N/m^3"),
+        ("F", "N"),
+    ];
+    let found = groups("m*x'^2/2", "k*x^2/2", "c*x'^2/2", &linear[..4]);
+    assert_same(&found.left[0], &expression("x'' + 2*zeta*x' + x"));
+    assert_eq!(found.groups.len(), 1);
+    assert_same(&found.groups[0].definition, &expression("c/(2*sqrt(k*m))"));
+    assert_same(&found.time, &expression("sqrt(m/k)"));
+    assert_eq!(found.sizes, [("x".into(), "x0".into())]);
+    assert_eq!((found.parameters, found.rank), (3, 3));
+    let cubic = groups("m*x'^2/2", "b*x^4/4", "0", &[linear[0], linear[1], linear[4]]);
+    assert_eq!(
+        (cubic.left[0].to_string().as_str(), cubic.groups.len()),
+        ("x'' + x^3", 0)
+    );
+    assert_same(&cubic.time, &expression("sqrt(m/b)/x0"));
+    // Where the parameters have a length, it is the unit as before.
+    let duffing = groups(
+        "m*x'^2/2",
+        "k*x^2/2 + b*x^4/4",
+        "0",
+        &[linear[0], linear[1], linear[2], linear[4]],
+    );
+    assert!(duffing.sizes.is_empty() && duffing.groups.is_empty());
+    // A dry force has one, too.
+    let dry = groups(
+        "m*x'^2/2",
+        "k*x^2/2",
+        "F*abs(x')",
+        &[linear[0], linear[1], linear[2], linear[5]],
+    );
+    assert!(dry.sizes.is_empty());
+}
+
+/// Seven links whose energies are written from the places of their masses: the mass matrix is `M_ij = (sum of masses from the later
+/// link on) L_i L_j cos(q_i - q_j)`.
+#[test]
+fn energies_from_the_places_of_seven_links_join() {
+    const LINKS: usize = 7;
+    let sum = |last: usize, function: &str| {
+        let terms: Vec<String> = (1..=last).map(|i| format!("L{i}*q{i}'*{function}(q{i})")).collect();
+        terms.join(" + ")
+    };
+    let kinetic: Vec<String> = (1..=LINKS)
+        .map(|k| format!("m{k}*(({})^2 + ({})^2)/2", sum(k, "cos"), sum(k, "sin")))
+        .collect();
+    let height = |k: usize| {
+        (1..=k)
+            .map(|i| format!("L{i}*cos(q{i})"))
+            .collect::<Vec<_>>()
+            .join(" + ")
+    };
+    let potential: Vec<String> = (1..=LINKS).map(|k| format!("-m{k}*g*({})", height(k))).collect();
+    let names: Vec<String> = (1..=LINKS).map(|i| format!("q{i}")).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let mechanism = Mechanism::parse(&names, &kinetic.join(" + "), &potential.join(" + ")).unwrap();
+    let equations = mechanism.equations().unwrap();
+    for i in 1..=LINKS {
+        for j in 1..=LINKS {
+            let masses: Vec<String> = (i.max(j)..=LINKS).map(|k| format!("m{k}")).collect();
+            let by_hand = format!("({})*L{i}*L{j}*cos(q{i} - q{j})", masses.join(" + "));
+            assert_same(&equations.mass[i - 1][j - 1], &expression(&by_hand));
+        }
+    }
+}
+
 /// The mass is a letter of the energies, with a unit and a value; the equation has no mass.
 #[test]
 fn a_letter_that_cancels_has_no_value_for_the_equation() {
@@ -617,4 +745,26 @@ fn a_letter_that_cancels_has_no_value_for_the_equation() {
     let names: Vec<&str> = values.iter().map(|(name, _)| name.name()).collect();
     // What stands nowhere is still passed on, to be refused by its name.
     assert_eq!(names, ["L", "g", "k"]);
+    // Where it is followed, the energy has a mass: given, it is the unit of the energy, without it the motion is the same.
+    let follow = |given: &str| {
+        let file: Problem = text
+            .replace("m = 3\n", given)
+            .replace("k = 1", "")
+            .parse()
+            .expect("a file");
+        let mut course = file.course().expect("a course");
+        course.values = file.values_with(&course.parameters()).expect("values").numbers();
+        course.begin("x".into(), 0.4).expect("a state");
+        course.duration = 2.0;
+        course.follow().expect("a motion")
+    };
+    let [heavy, light, none] = ["m = 3\n", "m = 1\n", ""].map(follow);
+    for motion in [&light, &none] {
+        assert_eq!(motion.at(2.0), heavy.at(2.0));
+    }
+    let [three, one] = [&heavy, &light].map(|motion| motion.balance.as_ref().expect("a balance").start);
+    let energy = 9.81 * 2.0 * (1.0 - 0.4_f64.cos());
+    assert!((three / (3.0 * energy) - 1.0).abs() < 1e-12 && (one / energy - 1.0).abs() < 1e-12);
+    assert!(none.balance.is_none());
+    assert_eq!(none.course.missing_for_energy(), ["m".into()]);
 }

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use lindstedt::impact::{PRINTED_CONTACT_TIME, Reading, Setup, SiImpact, solve};
+use lindstedt::impact::{PRINTED_CONTACT_TIME, Parameter, Reading, Setup, SiImpact, solve};
 use lindstedt::numeric::ode::{Event, Options, State, integrate};
 use lindstedt::problem::Problem;
 use serde_json::Value;
@@ -266,4 +266,62 @@ fn the_peak_force_of_a_damped_contact_is_the_greatest_one() {
     assert!((found / (si.units.force() * law.peak_force) - 1.0).abs() < 0.01);
     let told = si.peak_force.closed_forms.last().expect("a closed form");
     assert!((told / found - 1.0).abs() < 0.01, "{told} {found}");
+}
+
+/// The speed of a restitution is in m/s beside numbers in SI units, and otherwise in units of L omega: that of the bob of a longer
+/// pendulum is the same, its angular velocity is not.
+#[test]
+fn a_stated_speed_has_the_unit_of_the_numbers_beside_it() {
+    let mu_of = |text: &str| {
+        let file: Problem = format!("[contact]\ngamma = 1e6\nrestitution = 0.8\n{text}")
+            .parse()
+            .expect("a file");
+        let asked = file.simulate(&[]).expect("a motion");
+        let (model, _) = asked.case.motion().expect("an equation");
+        (
+            model.mu,
+            asked.case.dissipation(None).expect("forms").at_speed_in_words(),
+        )
+    };
+    let unit = |length: f64, gravity: f64| (length * gravity).sqrt();
+    let bare = |speed: f64| mu_of(&format!("at_speed = {speed}"));
+    assert_eq!(bare(0.7).1.as_deref(), Some("0.7 rad*omega"));
+    for (sections, length, gravity) in [
+        ("[design]\nlength = 0.25", 0.25, 9.81),
+        ("[pendulum]\nlength = 0.25\ngravity = 1.6", 0.25, 1.6),
+        ("[pendulum]\nmass = 0.02", 0.0681, 9.81),
+        ("[damping]\nviscous = 0.001", 0.0681, 9.81),
+        ("[design]\nmodulus = 2e9", 0.0681, 9.81),
+    ] {
+        let (mu, words) = mu_of(&format!("at_speed = 0.7\n{sections}"));
+        let expected = bare(0.7 / unit(length, gravity)).0;
+        assert!((mu / expected - 1.0).abs() < 1e-12, "{sections}: {mu} and {expected}");
+        let words = words.expect("a speed");
+        assert!(
+            words.starts_with("0.7 m/s, ") && words.ends_with(" rad*omega"),
+            "{words}"
+        );
+    }
+    // The phases of one impact and the study of materials read it alike.
+    let text = "[contact]\ngamma = 1e6\nrestitution = 0.8\nat_speed = 0.7\n[design]\nmass = 0.02\nlength = 0.25\ngravity = 9.81";
+    let impact =
+        solve(Setup::try_from(&text.parse::<Problem>().expect("a file")).expect("an impact")).expect("a motion");
+    let (mu, _) = mu_of("at_speed = 0.7\n[design]\nlength = 0.25");
+    assert!((impact.damping / (mu / 1e6) - 1.0).abs() < 1e-12);
+    let text = "[contact]\nrestitution = 0.8\nat_speed = 0.7\n[design]\nlength = 0.25";
+    let study = text
+        .parse::<Problem>()
+        .expect("a file")
+        .materials(false)
+        .expect("a study");
+    let forms = study.case.dissipation(None).expect("forms");
+    assert!((forms.mu_over_gamma / (mu / 1e6) - 1.0).abs() < 1e-12);
+    // Where the length is swept the speed of the bob stays what it is.
+    let file: Problem = "[contact]\nrestitution = 0.8\nat_speed = 0.7".parse().expect("a file");
+    let mut case = file.simulate(&[Parameter::Length]).expect("a motion").case;
+    let mut ratio = |length: f64| {
+        case.set(Parameter::Length, length);
+        case.dissipation(None).expect("forms").mu_over_gamma
+    };
+    assert!((ratio(1.0) / ratio(0.25) / 2.0 - 1.0).abs() < 1e-12);
 }

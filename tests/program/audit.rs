@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use std::process::{Command, Output};
 
 use lindstedt::audit::{
-    Audit, Claims, Finding, NAMES, Printed, Quantity, Relation, Rounding, Stated, Trend, Verdict, audit,
+    Audit, Claims, Computed, Finding, NAMES, Printed, Quantity, Relation, Rounding, Stated, Trend, Verdict, audit,
 };
 
 const PAPER: &str = include_str!("../../examples/audit/paper.toml");
@@ -224,6 +224,9 @@ fn what_is_found_of_the_paper_follows_from_its_numbers() {
     let exact = (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt();
     assert!((number("contact-speed-of-the-pendulum") / exact - 1.0).abs() < 1e-12);
     assert!((number("precisely-close-speed") - (1.0 - speed / exact)).abs() < 1e-12);
+    // Equation (13) starts on the other side of equation (11).
+    assert!((number("equation-13-start") + 1.5).abs() < 1e-12);
+    assert_eq!(finding(&paper, "one-length").assumption(), "l = L = 0.0681");
 }
 
 #[test]
@@ -403,6 +406,42 @@ fn a_formula_is_compared_for_every_value_of_its_symbols() {
         words.contains("derived, but not printed: `L^2*m*x'^2*cos(x)^2/2`"),
         "{words}"
     );
+}
+
+/// A term that the law does not have is marked as absent, and one that it cannot have, or does not reach, is no zero.
+#[test]
+fn the_coefficient_of_a_term_that_does_not_occur_is_no_number_among_others() {
+    let of = |term: &str, printed: &str| {
+        let text = format!(
+            "[[claim]]\nid = \"one\"\nquantity = \"coefficient\"\nof = \"frequency_squared\"\nterm = \"{term}\"\n\
+             equation = \"x'' + sin(x) = 0\"\nmethod = \"lindstedt-poincare\"\norder = 4\nprinted = \"{printed}\""
+        );
+        audit(claims(&text)).findings.swap_remove(0)
+    };
+    assert_eq!(of("A^2", "-1/8").verdict, Verdict::Reproduced);
+    let absent = of("A^3", "1/8");
+    assert_eq!(absent.verdict, Verdict::Inconsistent);
+    assert_eq!(absent.evidence, ["printed 1/8, but the derived law has no such term"]);
+    assert!(matches!(absent.tried[0].computed[0], Ok(Computed::Absent)));
+    assert_eq!(of("A^3", "0").verdict, Verdict::Reproduced);
+    for (term, words) in [
+        ("A^6", "ask for a higher `order`"),
+        ("B^2", "`B` does not occur"),
+        ("A^2*k", "`k` does not occur"),
+    ] {
+        for printed in ["0", "1/8"] {
+            let found = of(term, printed);
+            assert_eq!(found.verdict, Verdict::NotReproducible, "{term}");
+            assert!(
+                found.evidence.iter().any(|evidence| evidence.contains(words)),
+                "{:?}",
+                found.evidence
+            );
+        }
+    }
+    let text = "[[claim]]\nid = \"one\"\nquantity = \"coefficient\"\nterm = \"A^3\"\nequation = \"x'' + sin(x) = 0\"\nprinted = \"0\"";
+    let output = of_file("absent", text, &[]);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("0, no such term"));
 }
 
 /// Whatever a file holds, it is read or refused, and what is read is judged.

@@ -810,3 +810,66 @@ fn the_examples_are_the_ones_the_readme_names() {
         assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join(name).exists(), "{name}");
     }
 }
+
+/// An amplitude or a position at which a sine has no digits left is refused by every command that reads one, and one at which the
+/// force has them is not.
+#[test]
+fn a_place_without_digits_is_refused() {
+    let of_file = |text: &str| {
+        let mut file = tempfile::NamedTempFile::with_suffix(".toml").expect("a file");
+        std::io::Write::write_all(&mut file, text.as_bytes()).expect("a file");
+        file
+    };
+    let [amplitude, barrier, start] = [
+        "[pendulum]\namplitude = 1e17",
+        "[pendulum]\namplitude = 1.5\nbarrier = 1e17\nspeed = 3.0",
+        "[pendulum]\nstart = -1e12",
+    ]
+    .map(of_file);
+    let path = |file: &tempfile::NamedTempFile| file.path().to_str().expect("a path").to_owned();
+    let [amplitude, barrier, start] = [&amplitude, &barrier, &start].map(path);
+    let refused: [&[&str]; 9] = [
+        &["simulate", &amplitude],
+        &["simulate", &barrier],
+        &["simulate", &start],
+        &["impact", &amplitude],
+        &["materials", &amplitude],
+        &["simulate", "x'' + sin(x) = 0", "--from", "x=1e17", "--until", "1"],
+        &["derive", "x'' + x*(2 + sin(x)) = 0", "--at", "A=1e17"],
+        &["compare", "x'' + x*(2 + cos(x)) = 0", "--at", "A=1e17"],
+        &[
+            "derive",
+            "x'' + x*(2 + cos(1e17*x)) = 0",
+            "--method",
+            "exact",
+            "--at",
+            "A=1",
+        ],
+    ];
+    for arguments in refused {
+        let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+            .args(arguments)
+            .output()
+            .expect("the program starts");
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(
+            (output.status.code(), output.stdout.len()),
+            (Some(1), 0),
+            "{arguments:?}: {message}"
+        );
+        assert!(message.contains("no digits left"), "{arguments:?}: {message}");
+    }
+    let answered: [&[&str]; 3] = [
+        &["derive", "x'' + x + sin(x) = 0", "--method", "exact", "--at", "A=1e15"],
+        &["derive", "x'' + x^3 = 0", "--method", "exact", "--at", "A=1e30"],
+        &["simulate", "x'' + exp(x) - 1 = 0", "--from", "x=1e-12", "--until", "1"],
+    ];
+    for arguments in answered {
+        let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+            .args(arguments)
+            .output()
+            .expect("the program starts");
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!message.contains("no digits left"), "{arguments:?}: {message}");
+    }
+}

@@ -33,7 +33,8 @@ pub struct LagrangianDocument {
     pub accelerations: Map<String>,
     /// Whether every term was checked for its unit: only where units were given.
     pub units_checked: bool,
-    /// The parameters that give the units of the dimensionless form; null without units or where there is none.
+    /// The parameters that give the units of the dimensionless form, and behind them the sizes of the motion that do, `x0` of the
+    /// coordinate x, where no product of parameters has its unit; null without units or where there is none.
     pub units: Option<Vec<String>>,
     /// The sums of parameters that count as one parameter, by their names in what follows; null likewise.
     pub combinations: Option<Map<String>>,
@@ -41,7 +42,7 @@ pub struct LagrangianDocument {
     pub time_unit: Option<String>,
     /// The number of parameters of the equations; null likewise.
     pub parameter_count: Option<usize>,
-    /// The rank of the matrix of their dimensions; null likewise.
+    /// The rank of the matrix of their dimensions, with those of the sizes that are units; null likewise.
     pub rank: Option<usize>,
     /// The dimensionless numbers on which the motion depends; null likewise.
     pub groups: Option<Vec<GroupDocument>>,
@@ -81,7 +82,8 @@ pub struct EquilibriumDocument {
     pub places: Map<Option<String>>,
     /// What lies between -1 and 1 where the place exists; null where it always does.
     pub cosine: Option<String>,
-    /// omega^2 of small swings about it, negative where it is unstable; null for several coordinates.
+    /// omega^2 of small swings about it, negative where it is unstable; null for several coordinates, and where the linear
+    /// equation changes with the time other than by sines and cosines of it.
     pub frequency_squared: Option<String>,
 }
 

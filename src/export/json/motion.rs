@@ -33,7 +33,8 @@ pub struct MotionDocument {
     pub section: Option<SectionDocument>,
     /// Those at the end.
     pub final_state: MotionSample,
-    /// The account of the energy; null for an equation whose inertia depends on the position.
+    /// The account of the energy; null for an equation whose inertia depends on the position, and without a value for a
+    /// letter of the energies that cancels in the equations of motion.
     pub energy: Option<EnergyAccount>,
     /// The largest difference from the other integrator, over the largest displacement; null where it was not asked for.
     pub difference: Option<f64>,

@@ -11,7 +11,7 @@ use super::Kind;
 use super::number::{Map, finite};
 use super::simulation::Barrier;
 use crate::genetic::{Coding, Crossover, Mutation, Penalty, StallTest, Stop};
-use crate::impact::{self, ContactDamping, Friction, Parameter, REST_FRACTION};
+use crate::impact::{self, ContactDamping, Friction, Parameter, REST_FRACTION, SpeedUnit};
 use crate::optimize::{self, Objective, Question, Role, SearchRun, Study, WITHIN};
 use crate::report::optimization_sentences;
 
@@ -123,8 +123,11 @@ pub struct ContactForm {
     pub form: String,
     /// Its number, in the unit of that key.
     pub value: f64,
-    /// The speed at which a restitution is stated, in radians per unit of time; null where none is.
+    /// The speed at which a restitution is stated, in `speed_unit`; null where none is.
     pub at_speed: Option<f64>,
+    /// The unit of that speed: `m/s`, or `rad*omega`, radians per unit of time. Left out where none is stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_unit: Option<String>,
 }
 
 /// What must not be larger.
@@ -529,7 +532,11 @@ impl Asked {
                     upper: variable.upper,
                 })
                 .collect(),
-            materials: question.materials.iter().map(Material::of).collect(),
+            materials: question
+                .materials
+                .iter()
+                .map(|material| Material::of(material, question.case.speed_unit))
+                .collect(),
             limits: question
                 .limits
                 .iter()
@@ -564,23 +571,24 @@ impl Asked {
 }
 
 impl ContactForm {
-    fn of(damping: ContactDamping, at_speed: Option<f64>) -> Self {
+    fn of(damping: ContactDamping, at_speed: Option<f64>, unit: SpeedUnit) -> Self {
         Self {
             form: damping.form().name().to_owned(),
             value: damping.value(),
             at_speed,
+            speed_unit: at_speed.map(|_| unit.name().to_owned()),
         }
     }
 }
 
 impl Material {
-    fn of(material: &impact::Material) -> Self {
+    fn of(material: &impact::Material, unit: SpeedUnit) -> Self {
         let damping = material.damping;
         Self {
             name: material.name.clone(),
             modulus: material.modulus.value(),
             yield_limit: material.yield_limit,
-            damping: damping.map(|damping| ContactForm::of(damping, material.at_speed)),
+            damping: damping.map(|damping| ContactForm::of(damping, material.at_speed, unit)),
         }
     }
 }
@@ -604,7 +612,7 @@ impl HeldFixed {
             },
             contact: question
                 .holds_contact_damping()
-                .then(|| ContactForm::of(case.contact_damping, case.at_speed)),
+                .then(|| ContactForm::of(case.contact_damping, case.at_speed, case.speed_unit)),
             zeta: case.get(Parameter::Zeta),
             viscous: case.viscous,
             alpha: case.get(Parameter::Alpha),

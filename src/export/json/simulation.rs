@@ -165,6 +165,9 @@ pub struct ContactDissipation {
     pub stated_restitution: Option<f64>,
     /// The speed at which that is stated, in radians per unit of time; null where another form is given.
     pub at_speed: Option<f64>,
+    /// The same in m/s. Left out where it is not stated so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_speed_si: Option<f64>,
 }
 
 /// A viscous damping, in every form.
@@ -209,6 +212,7 @@ impl From<&impact::Dissipation> for Dissipation {
                     _ => None,
                 },
                 at_speed: damping.at_speed,
+                at_speed_si: damping.at_speed_si,
             },
             viscous: ViscousDissipation {
                 held_fixed: damping.viscous_form.name().to_owned(),

@@ -34,6 +34,9 @@ pub struct Verification {
     pub error_of_omega: Option<f64>,
     /// The largest |x - x_true| over one true period in real time, as a fraction of the amplitude; null where it is not known.
     pub max_deviation: Option<f64>,
+    /// Why the displacement is not judged, in words. Left out where it is, or where there is none to judge.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_deviation: Option<String>,
     /// The root mean square of what the formula leaves of the equation, over that of the force; null where it is not known.
     pub residual: Option<f64>,
     /// The exponent with which the error of the frequency vanishes as the small parameter does; of a motion followed from its start
@@ -164,6 +167,7 @@ pub fn verification(verification: &verify::Verification) -> Verification {
         judged_on: verification.judged_on.to_owned(),
         error_of_omega: finite(verification.error_of_omega),
         max_deviation: finite(verification.max_deviation),
+        no_deviation: verification.no_deviation.clone(),
         residual: finite(verification.residual),
         slope: finite(verification.slope),
         ranges: ranges

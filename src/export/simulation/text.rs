@@ -229,13 +229,13 @@ fn damping(dissipation: &Dissipation, has_barrier: bool, units: Option<&Units>) 
         forms.extend(in_si("lambda", lambda, "s/m"));
         forms.extend(in_si("damping", coefficient, "N s/m^(5/2)"));
         entry("contact", forms);
-        if let (ContactDamping::Restitution(e), Some(speed)) = (dissipation.contact, dissipation.at_speed) {
-            let given = format!("restitution = {} at the speed {}", decimal(e), decimal(speed));
+        if let (ContactDamping::Restitution(e), Some(speed)) = (dissipation.contact, dissipation.at_speed_in_words()) {
+            let given = format!("restitution = {} at the speed {speed}", decimal(e));
             entry("", vec![given]);
         }
         if let (Some(e), Some(speed)) = (dissipation.restitution, dissipation.touch_speed) {
             let (e, speed) = (decimal(e), decimal(speed));
-            let words = format!("restitution {e} at {speed}, the speed of the first touch without damping");
+            let words = format!("restitution {e} at {speed} rad*omega, the speed of the first touch without damping");
             entry("", vec![words]);
         }
     }

@@ -38,7 +38,7 @@ use super::super::hertz::positive;
 use super::time::{Panel, expand, invert, length};
 use super::{ContactError, in_range, within};
 use crate::decimal::significant;
-use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth, nodes_and_weights};
+use crate::numeric::ode::quadrature::{QuadratureError, integrate_part, nodes_and_weights};
 use crate::numeric::ode::root::find_root;
 
 /// A harmonic beyond it is worth a parabola of its own.
@@ -84,7 +84,7 @@ impl ExactContact {
         }
         let deepest = deepest_root(&force, speed)?;
         let depth = in_range("depth", deepest * deepest)?;
-        let work = Running::new(|q: f64| 2.0 * q * force(q * q));
+        let work = Running::new(|q: f64| 2.0 * q * force(q * q), 0.5 * speed * speed);
         let slowness = |q: f64| -> Result<f64, ContactError> {
             let square = speed * speed - 2.0 * work.up_to(q)?;
             match square > 0.0 {
@@ -94,10 +94,13 @@ impl ExactContact {
         };
         let first = expand(slowness, |q| 2.0 * q, 0.0, 0.5 * deepest)?;
         // From the deepest point back, q = Q (1 - w^2), the force gives what it took.
-        let given = Running::new(|w: f64| {
-            let q = deepest * (1.0 - w * w);
-            4.0 * deepest * w * q * force(q * q)
-        });
+        let given = Running::new(
+            |w: f64| {
+                let q = deepest * (1.0 - w * w);
+                4.0 * deepest * w * q * force(q * q)
+            },
+            0.0,
+        );
         let rate = |w: f64| -> Result<f64, ContactError> {
             let given = given.up_to(w)?;
             match given > 0.0 {
@@ -360,14 +363,17 @@ impl SineSeries {
 /// all points of the rule, is seen by a shorter one.
 struct Running<F> {
     integrand: F,
+    /// What the integral is a part of: errors count relative to it.
+    whole: f64,
     /// Places in rising order, and the integral up to each.
     known: RefCell<Vec<(f64, f64)>>,
 }
 
 impl<F: Fn(f64) -> f64> Running<F> {
-    fn new(integrand: F) -> Self {
+    fn new(integrand: F, whole: f64) -> Self {
         Self {
             integrand,
+            whole,
             known: RefCell::default(),
         }
     }
@@ -376,33 +382,37 @@ impl<F: Fn(f64) -> f64> Running<F> {
         let mut known = self.known.borrow_mut();
         while known.pop_if(|(known, _)| *known > place).is_some() {}
         let (from, before) = known.last().copied().unwrap_or((0.0, 0.0));
-        let whole = before + integrate_smooth(&self.integrand, from, place, 1e-14)?.0;
+        let whole = before + integrate_part(&self.integrand, [from, place], 1e-14, self.whole)?;
         known.push((place, whole));
         Ok(whole)
     }
 }
 
-/// The work of the force up to the depth q^2.
-fn work(force: impl Fn(f64) -> f64, q: f64) -> Result<f64, QuadratureError> {
-    Ok(integrate_smooth(|q| 2.0 * q * force(q * q), 0.0, q, 1e-14)?.0)
+/// The work of the force up to the depth q^2, as a part of the energy that is to be taken up.
+fn work(force: impl Fn(f64) -> f64, q: f64, energy: f64) -> Result<f64, QuadratureError> {
+    integrate_part(|q| 2.0 * q * force(q * q), [0.0, q], 1e-14, energy)
 }
 
 /// The same by pieces in the golden section, none of which ends where a panel that was halved does: a jump of the force beside such an
 /// end lies behind all points of a rule.
-fn work_by_sections(force: impl Fn(f64) -> f64, q: f64) -> Result<f64, QuadratureError> {
+fn work_by_sections(force: impl Fn(f64) -> f64, q: f64, energy: f64) -> Result<f64, QuadratureError> {
     const PIECES: i32 = 60;
     const SECTION: f64 = 0.618_033_988_749_894_9;
     let end_of = |piece: i32| if piece < PIECES { q - q * SECTION.powi(piece) } else { q };
     (0..PIECES)
-        .map(|piece| Ok(integrate_smooth(|q| 2.0 * q * force(q * q), end_of(piece), end_of(piece + 1), 1e-14)?.0))
+        .map(|piece| {
+            let ends = [end_of(piece), end_of(piece + 1)];
+            integrate_part(|q| 2.0 * q * force(q * q), ends, 1e-14, energy)
+        })
         .sum()
 }
 
 /// The square root of the depth at which the force has first done the work v^2/2.
 fn deepest_root(force: impl Fn(f64) -> f64, speed: f64) -> Result<f64, ContactError> {
+    let energy = 0.5 * speed * speed;
     // A depth at which there is no force is too deep.
-    let left = |q: f64| match work(&force, q) {
-        Ok(work) => 1.0 - 2.0 * work / (speed * speed),
+    let left = |q: f64| match work(&force, q, energy) {
+        Ok(work) => 1.0 - work / energy,
         Err(_) => -1.0,
     };
     let never = |q: f64| ContactError::NeverTurns { searched: q * q };
@@ -430,15 +440,15 @@ fn deepest_root(force: impl Fn(f64) -> f64, speed: f64) -> Result<f64, ContactEr
         deepest = find_root(left, low, high)?;
     }
     // A jump that one way of adding up the work has overlooked, the other has not.
-    let again = |q: f64| match work_by_sections(&force, q) {
-        Ok(work) => 1.0 - 2.0 * work / (speed * speed),
+    let again = |q: f64| match work_by_sections(&force, q, energy) {
+        Ok(work) => 1.0 - work / energy,
         Err(_) => -1.0,
     };
     if again(deepest).abs() > 1e-10 {
         deepest = find_root(again, low, high).unwrap_or(deepest);
     }
     // The edge of where the force is defined is no turning point.
-    match work(&force, deepest * (1.0 + 1e-9)) {
+    match work(&force, deepest * (1.0 + 1e-9), energy) {
         Ok(_) => Ok(deepest),
         Err(_) => Err(never(deepest)),
     }

@@ -360,14 +360,16 @@ fn refuse_other_orders(parts: &Parts, options: &Options) -> Result<(), Refusal> 
     Err(reason.to(Method::Averaging))
 }
 
-/// Powers of quotients as products of powers, so that the amplitude stands alone.
+/// Powers of quotients as products of powers, so that the amplitude stands alone; what has no letters stays together.
 fn spread(expression: &Expr) -> Result<Expr, ExprError> {
     let (number, factors) = expression.factors();
     let mut product = Expr::number(number);
     for factor in factors {
         let (base, exponent) = factor.base_and_exponent();
         let (number, inner) = base.factors();
-        product = product * Expr::power(&Expr::number(number), &exponent)?;
+        let (constant, inner): (Vec<&Expr>, Vec<&Expr>) = inner.iter().partition(|part| part.symbols().is_empty());
+        let constant = Expr::product([Expr::number(number)].into_iter().chain(constant.into_iter().cloned()));
+        product = product * Expr::power(&constant, &exponent)?;
         for part in inner {
             let (base, power) = part.base_and_exponent();
             product = product * Expr::power(&base, &(&power * &exponent).expand()?)?;

@@ -420,7 +420,7 @@ fn integral_within(
     if let Some(value) = settled(function, from, to, negligible, MOST_PANELS) {
         return Ok(value);
     }
-    match integrate_within(function, &[from, to], TOLERANCE, most_panels) {
+    match integrate_within(function, &[from, to], [TOLERANCE, 0.0], most_panels) {
         // Where pull and push cancel, the integral is as good as the forces in it allow.
         Err(QuadratureError::NotConverged {
             value, error_estimate, ..

@@ -103,17 +103,33 @@ pub fn integrate_piecewise(
     ends: &[f64],
     tolerance: f64,
 ) -> Result<(f64, f64), QuadratureError> {
-    integrate_within(function, ends, tolerance, MAXIMUM_PANELS)
+    integrate_within(function, ends, [tolerance, 0.0], MAXIMUM_PANELS)
 }
 
-/// As [`integrate_piecewise`] with as many panels as `most_panels` for the first piece, for who halves the interval otherwise.
+/// Integral of a smooth `function`, which is a part of a `whole` and is asked for to `tolerance` times the larger of the two: near
+/// the end of an interval where the integrand is a difference of nearly equal numbers, its own size would ask for digits that it lacks.
+///
+/// # Errors
+/// As [`integrate_smooth`].
+pub(crate) fn integrate_part(
+    function: impl FnMut(f64) -> f64,
+    [from, to]: [f64; 2],
+    tolerance: f64,
+    whole: f64,
+) -> Result<f64, QuadratureError> {
+    let tolerances = [tolerance, tolerance * whole.abs()];
+    Ok(integrate_within(function, &[from, to], tolerances, MAXIMUM_PANELS)?.0)
+}
+
+/// As [`integrate_piecewise`] with the relative and the absolute tolerance, of which the larger counts, and with as many panels as
+/// `most_panels` for the first piece, for who halves the interval otherwise.
 ///
 /// # Errors
 /// As [`integrate_piecewise`].
 pub(crate) fn integrate_within(
     mut function: impl FnMut(f64) -> f64,
     ends: &[f64],
-    tolerance: f64,
+    [tolerance, absolute]: [f64; 2],
     most_panels: usize,
 ) -> Result<(f64, f64), QuadratureError> {
     let pieces = || ends.windows(2).map(|pair| (pair[0], pair[1]));
@@ -138,9 +154,10 @@ pub(crate) fn integrate_within(
     let mut running_magnitude = total(&panels, |panel| panel.magnitude);
     loop {
         let sum = |of: fn(&Panel) -> f64| total(&panels, of);
-        if running_error.is_nan() || running_error <= 2.0 * tolerance * running_magnitude {
+        let bound = |magnitude: f64| absolute.max(tolerance * magnitude);
+        if running_error.is_nan() || running_error <= 2.0 * bound(running_magnitude) {
             let error_estimate = sum(|panel| panel.error);
-            if error_estimate <= tolerance * sum(|panel| panel.magnitude) {
+            if error_estimate <= bound(sum(|panel| panel.magnitude)) {
                 return Ok((sum(Panel::value), error_estimate));
             }
         }

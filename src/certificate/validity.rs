@@ -8,7 +8,7 @@
 //! q(A) = q(A_m) + (A - A_m) ((omega~^2)' mu + omega~^2 mu')      with the law, mu and mu' of the whole interval in the second term
 //! ```
 //!
-//! What is not known of q is of the order h^2, since the two slopes are known to the order h: where the error hardly changes with A they cancel.
+//! The width of q is of the order h^2, since the two slopes are known to the order h: where the error hardly changes with A they cancel.
 //!
 //! In: an oscillator, an answer with a law in closed form, an interval of amplitudes. Out: how far the formula is proved to
 //! hold from its lower end on. Intervals are halved where they do not prove it and widened where they do; each costs a proof.

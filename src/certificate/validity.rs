@@ -63,7 +63,7 @@ pub enum Beyond {
 
 /// Places of the range, at equal ratios, for a tolerance of a hundredth: no interval is shorter than from one to the next. For a
 /// smaller tolerance there are more, up to sixteen times as many.
-const PLACES: u32 = 1 << 14;
+const PLACES: u32 = 1 << 16;
 
 /// Binary digits of the motions, of which a few hundredths have to be proved.
 const BITS: usize = 48;
@@ -136,7 +136,7 @@ pub fn validity(
                     position if position == finest => to.clone(),
                     position => rounded_fraction(&place(position), 6),
                 };
-                let farther = [0, 3, 15, 63, 255].map(|steps| shown(next + (steps << finer)));
+                let farther = [0, 12, 60, 252, 1020].map(|steps| shown(next + (steps << finer)));
                 break family.beyond(&farther, tolerance);
             }
         }

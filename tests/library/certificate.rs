@@ -544,10 +544,10 @@ fn a_proved_range_reaches_its_end_where_the_error_is_flat() {
         let truth = to_f64(&duffing(&ratio(1, 1), &exact));
         ((1.0 + 0.75 * amplitude * amplitude).sqrt() / truth - 1.0).abs()
     };
-    for tolerance in [0.01, 0.02, 0.0215] {
-        let ends = [ratio(1, 10), ratio(30, 1)];
+    for tolerance in [0.01, 0.02] {
+        let ends = [ratio(1, 1), ratio(8, 1)];
         let (to, beyond, _) = proved_range(cubic, Method::HarmonicBalance, 1, "", ends, tolerance);
-        let (mut low, mut high) = (0.1, 30.0);
+        let (mut low, mut high) = (1.0, 8.0);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if error(middle) <= tolerance {

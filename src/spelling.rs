@@ -25,12 +25,12 @@ pub fn printable(text: &str) -> String {
     escaped(text, |letter| !matches!(letter, '\n' | '\t') && is_invisible(letter))
 }
 
-/// The same in one line.
+/// A text from a file in one line, line ends and tabs as codes too.
 pub fn printable_in_line(text: &str) -> String {
     escaped(text, is_invisible)
 }
 
-/// Whether a letter steers what shows it: control characters, and marks of the direction of writing.
+/// Returns whether a letter steers what shows it: control characters, and marks of the direction of writing.
 pub fn is_invisible(letter: char) -> bool {
     letter.is_control()
         || matches!(letter, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')

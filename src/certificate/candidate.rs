@@ -317,7 +317,7 @@ pub(super) fn judged(solution: &Solution, at: &Values, bits: usize) -> Result<Ju
     Ok(formula)
 }
 
-/// Whether a ball is about a double.
+/// Returns whether a ball lies near a double.
 pub(super) fn is_near(exact: &Ball, double: f64) -> bool {
     const AGREEMENT: f64 = 1e-9;
     (WORKING.nearest(exact) - double).abs() <= AGREEMENT * double.abs()

@@ -77,7 +77,7 @@ pub struct Range {
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedFormula {
     /// The law as it was derived: `omega = ...` or `omega^2 = ...`, of a driven motion `x = ...` in t, with definitions of letters behind commas.
-    /// What is of another form is words, of which nothing is proved.
+    /// A text of another form is words, of which nothing is proved.
     pub law: String,
     /// The values of the letters in the law.
     pub values: Values,
@@ -114,7 +114,7 @@ pub struct Errors {
 }
 
 impl JudgedFormula {
-    /// What does not fit together. Of a motion without a drive the frequency is positive, and the first harmonic there: with another sign, or
+    /// Checks sizes, and of a motion without a drive that the frequency is positive and the first harmonic there: with another sign, or
     /// as that of half the frequency, the same formula would be held against the motion at another phase.
     pub(super) fn well_formed(&self, is_driven: bool) -> Result<(), &'static str> {
         let small = |integer: &Integer| integer.bits() <= 700;
@@ -265,7 +265,7 @@ fn apart(own: &Ball, truth: &Ball) -> (Range, Range) {
     (error, relative)
 }
 
-/// No more than the root of the mean square of a series.
+/// A lower bound of the root mean square of a series.
 fn below_mean(series: &FourierSeries) -> f64 {
     /// More than what the roundings of so short a sum make.
     const ROUNDING: f64 = 1e-12;

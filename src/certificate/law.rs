@@ -56,7 +56,7 @@ pub(super) fn with_definitions(
         .collect()
 }
 
-/// Those of the values whose letters stand in a law; none where it is words.
+/// Selects the values whose letters stand in a law; none for words.
 pub(super) fn values_in(law: &str, at: &Values) -> Values {
     let letters = read(law).map(|(_, value)| value.symbols()).unwrap_or_default();
     at.split(&letters.into_iter().collect::<Vec<Symbol>>())
@@ -114,7 +114,7 @@ pub(super) fn with_values(law: &str, values: &Values) -> Option<(String, Expr)> 
     Some((name, value.substitute_all(&values).ok()?))
 }
 
-/// omega by the law of a frequency; `None` of words, and where it has no positive value.
+/// Evaluates omega by its law; `None` for words, and if the law has no positive value.
 pub(super) fn frequency(law: &str, values: &Values) -> Option<Ball> {
     let (name, value) = with_values(law, values)?;
     let value = number(&value)?;
@@ -127,7 +127,7 @@ pub(super) fn frequency(law: &str, values: &Values) -> Option<Ball> {
 
 /// The number that an expression without letters is.
 pub(super) fn number(expression: &Expr) -> Option<Ball> {
-    /// How good doubles of functions that have no value in balls are, relative to their size.
+    /// The relative error of a double, for functions that have no value in balls.
     const ROUNDING: f64 = 1e-12;
     let nothing = FourierSeries::constant(Ball::zero());
     if expression.symbols().is_empty()
@@ -141,7 +141,7 @@ pub(super) fn number(expression: &Expr) -> Option<Ball> {
     Some(ball)
 }
 
-/// Whether the law was read, and gives the frequency of the formula to its last digits.
+/// Returns whether the law was read and gives the frequency of the formula to its last digits; `false` of words.
 ///
 /// # Errors
 /// A law that gives another one.
@@ -154,7 +154,7 @@ pub(super) fn hold(formula: &JudgedFormula, bits: usize) -> Result<bool, &'stati
     }
 }
 
-/// Whether the law of a displacement gives the coefficients of the formula to their last digits.
+/// Returns whether the law of a displacement was read and gives the coefficients of the formula to their last digits; `false` of words.
 ///
 /// # Errors
 /// A law that gives others.
@@ -176,7 +176,7 @@ pub(super) fn hold_displacement(
     }
 }
 
-/// Whether a number is one of a ball, rounded to so many binary digits.
+/// Returns whether a number is one of a ball, rounded to so many binary digits.
 fn is_rounded(exact: &Ball, number: &Ball, bits: usize) -> bool {
     let apart = WORKING.difference(exact, number);
     WORKING.distance_from_zero(&apart) <= 2.0_f64.powi(1 - bits as i32)

@@ -101,10 +101,10 @@ pub struct Certified {
     pub exponent: Option<Enclosure>,
     /// Of a driven motion the amplitude of its own harmonic.
     pub amplitude: Option<Enclosure>,
-    /// How many motions the symmetries of the equation make of the proved one, itself among them: with a drive that of another whole number of its
+    /// The number of motions that the symmetries of the equation make of the proved one, itself among them: with a drive that of another whole number of its
     /// periods later, of an equation that is its mirror image the mirror image. A formula is one for all of them alike.
     pub copies: usize,
-    /// Whether the law of the formula was read as text, and gives the numbers that are judged: the frequency, of a driven motion all.
+    /// Set if the law of the formula was read as text and gives the numbers that are judged: the frequency, of a driven motion all.
     pub law_is_held: bool,
     /// Of the formula, where one is judged.
     pub formula: Option<Errors>,
@@ -235,7 +235,10 @@ impl Certificate {
         self.well_formed_formula()
     }
 
-    /// What does not fit together in the formula, or with the motion that it is held against.
+    /// Checks the formula, and that it belongs to the motion that it is held against.
+    ///
+    /// # Errors
+    /// The demand that does not hold.
     fn well_formed_formula(&self) -> Result<(), &'static str> {
         let Some(formula) = &self.formula else { return Ok(()) };
         formula.well_formed(false)?;
@@ -253,19 +256,37 @@ impl Certificate {
         law::hold(formula, self.bits).map(|_| ())
     }
 
-    /// Whether the amplitude among the values of the law is that of the motion, about a place of rest.
+    /// Checks that the amplitude among the values of the law is that of the motion, about a place of rest.
     fn amplitude_of_law(&self, formula: &JudgedFormula) -> Result<(), &'static str> {
         let letter = AmplitudeConvention::Initial.symbol();
         let amplitude = formula.values.iter().find(|(name, _)| *name == letter);
         let Some((_, amplitude)) = amplitude else { return Ok(()) };
-        let place = &Expr::number(self.start.clone()) - amplitude;
-        let force = self.force.substitute(coordinate(), &place).ok();
-        match force.and_then(|force| law::number(&force)) {
-            Some(force) if WORKING.distance_from_zero(&force) <= 0.0 => Ok(()),
-            _ => Err("a law whose amplitude is not that of the motion"),
+        let belongs = amplitude.as_number().is_some_and(|amplitude| {
+            let place = &self.start - amplitude;
+            // An equilibrium that is no fraction is known to seventeen digits.
+            let near = amplitude.abs() / Rational::from_integer(Integer::from(1) << ROUNDING_OF_EQUILIBRIUM);
+            let force = |place: Rational| {
+                let value = self.force.substitute(coordinate(), &Expr::number(place)).ok();
+                value.and_then(|value| law::number(&value))
+            };
+            let is_zero = |ball: &Ball| WORKING.distance_from_zero(ball) <= 0.0;
+            match [&place - &near, place.clone(), &place + &near].map(force) {
+                [_, Some(middle), _] if is_zero(&middle) => true,
+                [Some(left), _, Some(right)] => {
+                    !is_zero(&left) && !is_zero(&right) && left.middle.is_negative() != right.middle.is_negative()
+                }
+                _ => false,
+            }
+        });
+        match belongs {
+            true => Ok(()),
+            false => Err("a law whose amplitude is not that of the motion"),
         }
     }
 }
+
+/// An equilibrium is known so well, in binary digits of the amplitude.
+const ROUNDING_OF_EQUILIBRIUM: usize = 30;
 
 /// The sum of the coefficients of a formula is its start up to so many binary digits of their size: they are doubles, of series that may cancel.
 const ROUNDING_OF_START: i32 = 20;

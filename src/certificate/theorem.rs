@@ -41,7 +41,7 @@ pub(super) fn prove(certificate: &Certificate) -> Result<Proof, NotProved> {
 pub(super) struct Neighbours {
     /// `1/omega^2` of every one of them.
     pub(super) mu: Ball,
-    /// That of the start of the certificate.
+    /// `1/omega^2` of the start of the certificate itself.
     pub(super) mu_in_middle: Ball,
     /// The derivative of `1/omega^2` by the start, at every one of them.
     pub(super) slope: Ball,
@@ -274,7 +274,7 @@ impl<'a> System<'a> {
         self.inverse.norm(&vector.block, WORKING) + beyond
     }
 
-    /// About the derivative v of `mu` and the harmonics by the start, and a bound of `||B (e_eta - DF v)||`.
+    /// Approximates the derivative of `mu` and the harmonics by the start by some v, and bounds `||B (e_eta - DF v)||`.
     fn slope_by_start(&self, slope: &Slope) -> (Direction, Bound) {
         /// Steps of Newton's iteration, each of which gains the digits of Z1.
         const STEPS: usize = 6;

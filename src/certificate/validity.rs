@@ -8,7 +8,7 @@
 //! q(A) = q(A_m) + (A - A_m) ((omega~^2)' mu + omega~^2 mu')      with the law, mu and mu' of the whole interval in the second term
 //! ```
 //!
-//! What is not known of q is of the order h^2, since the two slopes are known to the order h: where the error hardly changes with A they cancel.
+//! The width of q is of the order h^2, since the two slopes are known to the order h: where the error hardly changes with A they cancel.
 //!
 //! In: an oscillator, an answer with a law in closed form, an interval of amplitudes. Out: how far the formula is proved to
 //! hold from its lower end on. Intervals are halved where they do not prove it and widened where they do; each costs a proof.
@@ -63,7 +63,7 @@ pub enum Beyond {
 
 /// Places of the range, at equal ratios, for a tolerance of a hundredth: no interval is shorter than from one to the next. For a
 /// smaller tolerance there are more, up to sixteen times as many.
-const PLACES: u32 = 1 << 14;
+const PLACES: u32 = 1 << 16;
 
 /// Binary digits of the motions, of which a few hundredths have to be proved.
 const BITS: usize = 48;
@@ -136,7 +136,7 @@ pub fn validity(
                     position if position == finest => to.clone(),
                     position => rounded_fraction(&place(position), 6),
                 };
-                let farther = [0, 3, 15, 63, 255].map(|steps| shown(next + (steps << finer)));
+                let farther = [0, 12, 60, 252, 1020].map(|steps| shown(next + (steps << finer)));
                 break family.beyond(&farther, tolerance);
             }
         }

@@ -48,7 +48,7 @@ pub struct CheckArguments {
     pub common: Common,
 }
 
-/// How long a file may keep `check` busy where no time limit is given, in seconds.
+/// The time limit of `check` in seconds where none is given.
 pub const LONGEST_CHECK: f64 = 60.0;
 
 /// A certificate of the most harmonics has so many bytes.

@@ -99,7 +99,7 @@ impl AnyCertificate<'_> {
         }
     }
 
-    /// What is within r of the numbers of the certificate, among what it is the only one.
+    /// The object of the proof: exactly one of these is within r of the numbers of the certificate.
     fn unknowns(&self) -> &'static str {
         match self {
             Self::Motion(_) => "pair (1/omega^2, X), X of cosines,",
@@ -112,7 +112,7 @@ impl AnyCertificate<'_> {
         }
     }
 
-    /// What the theorem leaves open: with odd harmonics alone it says nothing of motions that have others.
+    /// A statement that the theorem leaves open: with odd harmonics alone it says nothing of motions that have others.
     fn left_open(&self) -> Option<&'static str> {
         match self {
             Self::Damped(certificate) if certificate.odd => {
@@ -434,7 +434,7 @@ fn displacement(units: [&[Integer]; 2], number: impl Fn(&Integer) -> Rational) -
     }
 }
 
-/// What a file says in words that nothing was held against.
+/// Shows the words of a file that nothing was held against.
 fn words_of_file<'a>(report: &CertificateReport) -> Option<Vec<Block<'a>>> {
     let formula = report.certificate.formula()?;
     let is_unread = report.question.is_none() && !report.certified.law_is_held && !formula.law.is_empty();
@@ -489,7 +489,7 @@ fn between(range: Range, unit: &str) -> String {
     between_exactly(ends, unit)
 }
 
-/// The same of a ratio in percent.
+/// A ratio with its two ends in percent, likewise.
 fn between_percent(range: Range) -> String {
     let percent = |end: f64| Some(from_f64(end)? * Integer::from(100));
     between_exactly([range.lower, range.upper].map(percent), " %")

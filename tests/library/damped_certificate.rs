@@ -426,7 +426,7 @@ fn a_cycle_begins_at_the_positive_cosine_of_its_first_harmonic() {
     // The same formula with a negative frequency, or as one of half the frequency.
     let with = |change: fn(&mut JudgedFormula)| {
         let mut other = sound.clone();
-        other.formula.as_mut().map(change);
+        change(other.formula.as_mut().expect("a formula"));
         reason(&other)
     };
     let negative = with(|formula| {
@@ -435,7 +435,7 @@ fn a_cycle_begins_at_the_positive_cosine_of_its_first_harmonic() {
     });
     assert!(negative.contains("not positive"), "{negative}");
     let slow = with(|formula| {
-        formula.frequency = &formula.frequency / Integer::from(2);
+        formula.frequency = formula.frequency.clone() >> 1;
         for list in [&mut formula.coefficients, &mut formula.sines] {
             *list = list.iter().flat_map(|units| [units.clone(), Integer::zero()]).collect();
         }

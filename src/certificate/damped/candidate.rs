@@ -223,7 +223,7 @@ fn judged_driven(solution: &Solution, at: &Values, harmonics: &Harmonics, drive:
     judged
 }
 
-/// Whether the harmonics of a series are these, up to the rounding of doubles.
+/// Returns whether a series has these harmonics up to the rounding of doubles.
 fn is_near_all(exact: &FourierSeries, harmonics: &Harmonics) -> bool {
     const ROUNDING: f64 = 1e-9;
     let own = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(0.0);

@@ -191,14 +191,17 @@ impl DampedCertificate {
         }
     }
 
-    /// What does not fit together in the formula.
+    /// Checks the numbers and the law of the formula.
+    ///
+    /// # Errors
+    /// The demand that does not hold.
     fn well_formed_formula(&self) -> Result<(), &'static str> {
         let Some(formula) = &self.formula else { return Ok(()) };
         formula.well_formed(self.drive.is_some())?;
         self.law_is_held(formula).map(|_| ())
     }
 
-    /// Whether the law of the formula was read, and gives its numbers.
+    /// Returns whether the law of the formula was read and gives its numbers; `false` of words.
     ///
     /// # Errors
     /// A law that gives others.
@@ -212,7 +215,7 @@ impl DampedCertificate {
         }
     }
 
-    /// What the symmetries of the equation make of a motion, itself first. With a drive of n periods that is the motion any number of periods
+    /// Returns the motions that the symmetries of the equation make of one, itself first. With a drive of n periods that is the motion any number of periods
     /// of the drive later. Of an equation that stays as it is with x turned, `-X` is one as well, and where it does so half a period of the drive
     /// later, `-X` half a period later is; of a limit cycle that is `-X` half its own period later, whose first harmonic is a positive cosine too.
     fn copies(&self, motion: &FourierSeries) -> Result<Vec<FourierSeries>, ExprError> {
@@ -234,7 +237,7 @@ impl DampedCertificate {
         Ok(copies)
     }
 
-    /// Whether the mirror image of the equation is the equation itself, and whether it is that half a period of the drive later, or of the
+    /// Returns whether the mirror image of the equation is the equation itself, and whether it is that half a period of the drive later, or of the
     /// cycle; not those symmetries that a motion of odd harmonics has by itself.
     fn mirrors(&self) -> Result<[bool; 2], ExprError> {
         let problem = self.problem();

@@ -34,7 +34,7 @@
 //! with some of X' added where it has a sine of the first harmonic (X' has, for a_1 is not zero): so the motion is a limit cycle,
 //! and it attracts where `-[g(X)]_0`, by Liouville's formula its characteristic exponent, is negative.
 //!
-//! Where the motion is looked for among those of odd harmonics, all of this is said of them alone: there is exactly one zero of odd harmonics in
+//! If the motion is looked for among those of odd harmonics, all of this is said of them alone: there is exactly one zero of odd harmonics in
 //! the ball, and one with even harmonics may be as near. A limit cycle is isolated all the same: half a period and a turn of x are a map
 //! whose second multiplier is positive, and the root of that of the period; were that one, so were this, and the solution above would have
 //! odd harmonics.
@@ -152,7 +152,7 @@ impl Problem<'_> {
         Ok(even.all(Ball::is_zero) && self.is_mirror_image(&letters)?)
     }
 
-    /// Whether the equation is its own mirror image, all these letters with the other sign.
+    /// Returns whether the equation is its own mirror image, all these letters with the other sign.
     pub(super) fn is_mirror_image(&self, letters: &[Symbol]) -> Result<bool, ExprError> {
         Ok(is_even(self.damping, letters)? && is_odd(self.force, letters)?)
     }

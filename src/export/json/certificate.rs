@@ -147,12 +147,12 @@ pub(super) fn texts(numbers: &[Integer]) -> Vec<String> {
     numbers.iter().map(ToString::to_string).collect()
 }
 
-/// What is claimed from above: as it is, or with three digits, rounded up.
+/// An upper claim as text: as it is, or rounded up to three digits.
 pub(super) fn claim(value: &Rational) -> String {
     short(value, 1)
 }
 
-/// What is claimed from below and from above.
+/// A lower and an upper claim as text, rounded outwards likewise.
 pub(super) fn claims([lower, upper]: &[Rational; 2]) -> [String; 2] {
     [short(lower, 0), short(upper, 1)]
 }

@@ -146,6 +146,16 @@ impl Force {
         }
     }
 
+    /// Whether rounding leaves the force a digit at the distance `y`: none where it is the difference of numbers that agree to all of theirs.
+    pub(super) fn has_digits(&self, y: f64) -> bool {
+        let there = |symbol: Symbol| match symbol == self.of.coordinate {
+            true => Some((self.equilibrium() + y, 0.0)),
+            false => self.of.numbers.get(&symbol).map(|&value| (value, 0.0)),
+        };
+        let found = self.of.force.evaluate_rounded(&there);
+        found.is_some_and(|(value, error)| error <= 0.1 * value.abs())
+    }
+
     /// The work against the force from one distance to another, with a bound of its error; `None` where it has no value between.
     pub fn work(&self, from: f64, to: f64) -> Option<(f64, f64)> {
         const TOLERANCE: f64 = 1e-14;

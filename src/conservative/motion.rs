@@ -92,10 +92,9 @@ impl Force {
             short if end.rim.separatrix && short <= NEAR && lost => {
                 PeriodError::NearSeparatrix { start: position, place }
             }
-            _ if gone && beyond >= 0.0 => PeriodError::OutsideWell {
-                error: Box::new(error),
-                range: well.in_words(AmplitudeConvention::Initial.symbol(), self.coordinate()),
-            },
+            _ if gone && beyond >= 0.0 => {
+                error.with_range(well.in_words(AmplitudeConvention::Initial.symbol(), self.coordinate()))
+            }
             _ => error,
         }
     }

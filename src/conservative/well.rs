@@ -28,11 +28,21 @@ pub struct Rim {
     pub separatrix: bool,
 }
 
-/// A rim, and the potential there above the bottom of the well; `None` where that is infinite or unknown.
+/// A rim and the potential there above the bottom of the well.
 #[derive(Clone, Copy)]
 struct Wall {
     rim: Rim,
+    /// `None` where it is infinite, or not asked for yet.
     height: Option<f64>,
+}
+
+impl Wall {
+    fn new(place: f64, separatrix: bool) -> Self {
+        Self {
+            rim: Rim { place, separatrix },
+            height: None,
+        }
+    }
 }
 
 /// The largest amplitude of a periodic motion on one side, with its sign, and the rim over which it would leave.
@@ -89,26 +99,25 @@ impl Well {
             return None;
         }
         Self::between(weighted, unit, |side| {
-            let ends = rim(force, side, unit).filter(|rim| !rim.separatrix && rim.place.is_finite());
-            let distance = |rim: &Rim| (rim.place - weighted.equilibrium()).abs();
+            let ends = rim(force, side, unit).filter(|wall| !wall.rim.separatrix && wall.rim.place.is_finite());
+            let distance = |wall: &Wall| (wall.rim.place - weighted.equilibrium()).abs();
             let nearest = rim(weighted, side, unit).into_iter().chain(ends);
             nearest.min_by(|one, other| distance(one).total_cmp(&distance(other)))
         })
     }
 
     /// The well between the rims on both sides of an equilibrium.
-    fn between(force: &Force, unit: f64, rim: impl Fn(f64) -> Option<Rim>) -> Option<Self> {
+    fn between(force: &Force, unit: f64, rim: impl Fn(f64) -> Option<Wall>) -> Option<Self> {
         /// Relative differences of two heights below this are rounding.
         const EVEN: f64 = 1e-8;
         let equilibrium = force.equilibrium();
         let wall = |side: f64| {
-            rim(side).map(|rim| Wall {
-                rim,
-                height: match rim.place.is_finite() {
-                    true => rise(force, rim.place - equilibrium),
-                    false => rise_to_infinity(force, side, unit),
-                },
-            })
+            let wall = rim(side)?;
+            let height = match wall.rim.place.is_finite() {
+                true => rise(force, wall.rim.place - equilibrium),
+                false => wall.height,
+            };
+            Some(Wall { height, ..wall })
         };
         let (left, right) = (wall(-1.0), wall(1.0));
         let end = |side: f64, own: Option<Wall>, other: Option<Wall>| {
@@ -243,9 +252,14 @@ const MOST_PIECES: usize = 256;
 
 /// The potential above the bottom of the well at a distance; `None` where it is infinite, or beyond too many pieces.
 pub(super) fn rise(force: &Force, to: f64) -> Option<f64> {
-    let mut knots = vec![to.min(0.0)];
-    knots.extend(force.cuts(0.0, to));
-    knots.push(to.max(0.0));
+    rise_between(force, 0.0, to)
+}
+
+/// The difference of the potential at two distances; `None` as for [`rise`].
+fn rise_between(force: &Force, from: f64, to: f64) -> Option<f64> {
+    let mut knots = vec![to.min(from)];
+    knots.extend(force.cuts(from, to));
+    knots.push(to.max(from));
     if knots.len() > MOST_PIECES {
         return None;
     }
@@ -261,7 +275,7 @@ pub(super) fn rise(force: &Force, to: f64) -> Option<f64> {
             Err(_) => return None,
         };
     }
-    Some(if to < 0.0 { -sum } else { sum })
+    Some(if to < from { -sum } else { sum })
 }
 
 /// The potential above the bottom of the well infinitely far away on one side, where the force dies away so fast that it is finite:
@@ -280,12 +294,13 @@ fn rise_to_infinity(force: &Force, side: f64, unit: f64) -> Option<f64> {
     let mut distance = unit;
     for _ in 0..DOUBLINGS {
         let next = 2.0 * distance;
-        let Some((work, _)) = force.work(side * distance, side * next) else {
+        let Some(work) = rise_between(force, side * distance, side * next) else {
             break;
         };
         sum += work;
         if work <= NEGLIGIBLE * NEGLIGIBLE * sum {
-            return (work >= 0.0).then_some(sum);
+            // Rounding may be all that is left of it.
+            return (work >= -NEGLIGIBLE * sum).then_some(sum);
         }
         let settled = (work / last - quotient).abs() < SETTLED;
         quotient = work / last;
@@ -332,7 +347,7 @@ fn towards_the_end(force: &Force, from: f64, to: f64) -> Option<f64> {
 }
 
 /// The first place on one side where the force turns its sign or ends; infinity where its potential levels off.
-fn rim(force: &Force, side: f64, unit: f64) -> Option<Rim> {
+fn rim(force: &Force, side: f64, unit: f64) -> Option<Wall> {
     let equilibrium = force.equilibrium();
     let pull = |distance: f64| side * force.at(side * distance);
     let mut strongest = 0.0_f64;
@@ -359,10 +374,7 @@ fn rim(force: &Force, side: f64, unit: f64) -> Option<Rim> {
         let there = pull(next);
         // Rounding may leave a finite value at the pole itself.
         if at_place && force.is_pole(equilibrium + side * next, unit) {
-            return Some(Rim {
-                place: equilibrium + side * next,
-                separatrix: false,
-            });
+            return Some(Wall::new(equilibrium + side * next, false));
         }
         if !there.is_finite() && at_place {
             // A corner at which the expression has no value, but the force goes on; a pole goes on as well, but is no corner.
@@ -377,19 +389,19 @@ fn rim(force: &Force, side: f64, unit: f64) -> Option<Rim> {
             return levels_off(force, side, unit, pull(distance) / strongest);
         }
         if !there.is_finite() {
-            return Some(Rim {
-                place: equilibrium + side * end_of_force(&pull, distance, next),
-                separatrix: false,
-            });
+            return Some(Wall::new(
+                equilibrium + side * end_of_force(&pull, distance, next),
+                false,
+            ));
         }
         if there <= 0.0 {
-            let Some((size, separatrix)) = sign_change(&pull, distance, next, strongest) else {
+            // Below its rounding a force that dies away turns its sign without a zero.
+            let is_rounding = [distance, next].into_iter().all(|size| !force.has_digits(side * size));
+            let Some((size, separatrix)) = sign_change(&pull, distance, next, strongest).filter(|_| !is_rounding)
+            else {
                 return levels_off(force, side, unit, there / strongest);
             };
-            return Some(Rim {
-                place: equilibrium + side * size,
-                separatrix,
-            });
+            return Some(Wall::new(equilibrium + side * size, separatrix));
         }
         strongest = strongest.max(there);
         distance = next;
@@ -402,15 +414,16 @@ fn rim(force: &Force, side: f64, unit: f64) -> Option<Rim> {
 
 /// Infinity as a rim, of a force that pulls back all the way with this part of its largest value in the end, where its potential is
 /// finite there.
-fn levels_off(force: &Force, side: f64, unit: f64, weakened: f64) -> Option<Rim> {
+fn levels_off(force: &Force, side: f64, unit: f64, weakened: f64) -> Option<Wall> {
     /// A force that has not weakened by this over ten decades, a million units far, does not die away as fast as its inverse distance.
     const DIES_AWAY: f64 = 1e-3;
     if weakened.is_nan() || weakened.abs() > DIES_AWAY {
         return None;
     }
-    rise_to_infinity(force, side, unit).map(|_| Rim {
-        place: side * f64::INFINITY,
-        separatrix: false,
+    let height = rise_to_infinity(force, side, unit)?;
+    Some(Wall {
+        height: Some(height),
+        ..Wall::new(side * f64::INFINITY, false)
     })
 }
 

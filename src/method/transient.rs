@@ -135,7 +135,12 @@ fn steady_by_numbers(a: Symbol, rate: &Expr) -> Option<Vec<LeadingCycle>> {
         let (number, factors) = scaled.terms().first()?.factors();
         let (outside, _): (Vec<Expr>, Vec<Expr>) = factors.iter().cloned().partition(|factor| !factor.contains(a));
         let letters = outside.into_iter().filter(|factor| !factor.symbols().is_empty());
-        let common = Expr::product(letters);
+        let letters: Vec<Expr> = letters.collect();
+        let common = Expr::product(letters.iter().cloned());
+        // The scale is positive and decides no sign.
+        let (of_scale, _) = scale.base_and_exponent();
+        let signed = letters.iter().filter(|factor| factor.base_and_exponent().0 != of_scale);
+        let signed = Expr::product(signed.cloned());
         let quotients = scaled.terms().iter().map(|term| Expr::divide(term, &common).ok());
         let quotient = Expr::sum(quotients.collect::<Option<Vec<Expr>>>()?);
         if number.is_zero() || quotient.symbols().into_iter().any(|name| name != a) {
@@ -150,7 +155,7 @@ fn steady_by_numbers(a: Symbol, rate: &Expr) -> Option<Vec<LeadingCycle>> {
             let sign = Expr::from(if before > 0.0 { 1 } else { -1 });
             Some(LeadingCycle {
                 amplitude: &scale * &Expr::number(rounded(root)),
-                attracts_where: Some(sign * &common),
+                attracts_where: Some(sign * &signed),
             })
         };
         Some(grid.windows(2).filter_map(cycle).collect())

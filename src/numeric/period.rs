@@ -223,6 +223,7 @@ fn ending(acceleration: &dyn Fn(f64, f64, f64) -> f64, equilibrium: f64, start: 
         return PeriodError::Escapes {
             start,
             searched: state.x,
+            range: None,
         };
     }
     if still.is_finite() && (!moving.is_finite() || moving > DRIVEN * still) {

@@ -184,10 +184,9 @@ pub(super) fn why_no_motion(
                 place: end.rim.place,
             }
         }
-        Some((well, end, amplitude)) if amplitude / end.amplitude >= 1.0 => PeriodError::OutsideWell {
-            error: Box::new(lost),
-            range: well.in_words(symbol, coordinate),
-        },
+        Some((well, end, amplitude)) if amplitude / end.amplitude >= 1.0 => {
+            lost.with_range(well.in_words(symbol, coordinate))
+        }
         _ => lost,
     })
 }

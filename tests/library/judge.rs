@@ -695,10 +695,8 @@ fn a_pendulum_that_goes_over_the_top_is_said_not_to_come_back() {
             .expect("values")
     };
     let refused = judge(&oscillator, &solution, &at("1"), 0.01).expect_err("it does not come back");
-    let VerificationError::Period(PeriodError::OutsideWell { error, .. }) = &refused else {
-        panic!("{refused}");
-    };
-    assert!(matches!(**error, PeriodError::Escapes { .. }), "{refused}");
+    let escapes = matches!(refused, VerificationError::Period(PeriodError::Escapes { .. }));
+    assert!(escapes, "{refused}");
     assert!(judge(&oscillator, &solution, &at("1/2"), 0.01).is_ok());
 }
 

@@ -32,23 +32,29 @@ const TOLERANCE_OF_PIECES: f64 = 1e-12;
 pub enum PeriodError {
     /// Released there, the motion leaves instead of swinging.
     #[error(
-        "no periodic motion about x = {equilibrium}: released at rest from x = {start}, the force does not pull back there"
+        "no periodic motion about x = {equilibrium}: released at rest from x = {start}, the force does not pull back there{}",
+        periodic_elsewhere(range)
     )]
     PushedAway {
         /// The release point.
         start: f64,
         /// The equilibrium.
         equilibrium: f64,
+        /// Where motions are periodic, in words.
+        range: Option<String>,
     },
     /// The motion turns before it reaches the equilibrium.
     #[error(
-        "no motion about x = {equilibrium}: released at rest from x = {start} it turns back before it gets there, and swings about another equilibrium"
+        "no motion about x = {equilibrium}: released at rest from x = {start} it turns back before it gets there, and swings about another equilibrium{}",
+        periodic_elsewhere(range)
     )]
     OtherWell {
         /// The release point.
         start: f64,
         /// The equilibrium.
         equilibrium: f64,
+        /// Where motions are periodic, in words.
+        range: Option<String>,
     },
     /// Too small a motion to pass the unstable equilibrium that it is asked about.
     #[error(
@@ -64,13 +70,16 @@ pub enum PeriodError {
     },
     /// No second turning point.
     #[error(
-        "no periodic motion: released at rest from x = {start}, the motion does not turn back before x = {searched:.2e}"
+        "no periodic motion: released at rest from x = {start}, the motion does not turn back before x = {searched:.2e}{}",
+        periodic_elsewhere(range)
     )]
     Escapes {
         /// The release point.
         start: f64,
         /// How far the search went.
         searched: f64,
+        /// Where motions are periodic, in words.
+        range: Option<String>,
     },
     /// A speed that grows faster than the force at rest could make it grow.
     #[error(
@@ -82,7 +91,7 @@ pub enum PeriodError {
         /// When.
         time: f64,
     },
-    /// Released farther out than motions come back from.
+    /// Released farther out than motions come back from, where what becomes of this one has no range of its own.
     #[error("{error}; motions are {range}")]
     OutsideWell {
         /// What becomes of this one.
@@ -143,7 +152,29 @@ pub enum PeriodError {
     Integration(#[from] IntegrationError),
 }
 
+/// The end of a message, where it is known for which amplitudes motions are periodic.
+fn periodic_elsewhere(range: &Option<String>) -> String {
+    range
+        .as_ref()
+        .map_or_else(String::new, |range| format!("; motions are {range}"))
+}
+
 impl PeriodError {
+    /// With the amplitudes at which motions are periodic, in words.
+    #[must_use]
+    pub fn with_range(mut self, words: String) -> Self {
+        match &mut self {
+            Self::PushedAway { range, .. } | Self::OtherWell { range, .. } | Self::Escapes { range, .. } => {
+                *range = Some(words);
+                self
+            }
+            _ => Self::OutsideWell {
+                error: Box::new(self),
+                range: words,
+            },
+        }
+    }
+
     /// The same where positions were distances from `origin`.
     #[must_use]
     pub fn moved(mut self, origin: f64) -> Self {
@@ -151,17 +182,21 @@ impl PeriodError {
             Self::PushedAway {
                 start,
                 equilibrium: other,
+                ..
             }
             | Self::OtherWell {
                 start,
                 equilibrium: other,
+                ..
             }
             | Self::OneWell {
                 start,
                 equilibrium: other,
                 ..
             }
-            | Self::Escapes { start, searched: other }
+            | Self::Escapes {
+                start, searched: other, ..
+            }
             | Self::Separatrix { start, place: other }
             | Self::NearSeparatrix { start, place: other } => {
                 *start += origin;
@@ -491,7 +526,11 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
     let amplitude = start - equilibrium;
     let side = amplitude.signum();
     if force.at(start) * side <= 0.0 || amplitude == 0.0 {
-        return Err(PeriodError::PushedAway { start, equilibrium });
+        return Err(PeriodError::PushedAway {
+            start,
+            equilibrium,
+            range: None,
+        });
     }
     if is_symmetric(force, equilibrium, amplitude) {
         return Ok(equilibrium - amplitude);
@@ -514,7 +553,11 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
             while let Some((here, next)) = stretches.pop() {
                 if evaluations.get() > MOST_EVALUATIONS {
                     return Err(match (here - equilibrium).abs() > FAR * amplitude.abs() {
-                        true => PeriodError::Escapes { start, searched: here },
+                        true => PeriodError::Escapes {
+                            start,
+                            searched: here,
+                            range: None,
+                        },
                         false => PeriodError::Waves,
                     });
                 }
@@ -544,7 +587,11 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
                     );
                     let end = root.map_err(|error| failure.map_or(error.into(), PeriodError::from))?;
                     return match (end - equilibrium) * amplitude > 0.0 {
-                        true => Err(PeriodError::OtherWell { start, equilibrium }),
+                        true => Err(PeriodError::OtherWell {
+                            start,
+                            equilibrium,
+                            range: None,
+                        }),
                         false => Ok(end),
                     };
                 }
@@ -555,7 +602,11 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
         x = places[places.len() - 1];
         window = f64::max(window, (x - equilibrium).abs());
     }
-    Err(PeriodError::Escapes { start, searched: x })
+    Err(PeriodError::Escapes {
+        start,
+        searched: x,
+        range: None,
+    })
 }
 
 /// Whether the well is symmetric and has a single bottom as far as the amplitude. The mirror image of the start is then the

@@ -118,6 +118,8 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
     const WRITTEN_OUT: usize = 21;
     /// What is longer is no number of anybody's equation.
     const LONGEST_BITS: u64 = 4_000;
+    /// Digits that tell any two doubles apart: more of them are no number that was rounded or typed.
+    const DIGITS: usize = 17;
     let bits = [value.numer(), value.denom()].map(Integer::bits);
     if bits.iter().sum::<u64>() < 36 || bits.iter().any(|bits| *bits > LONGEST_BITS) {
         return None;
@@ -144,6 +146,9 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
         decimals -= 1;
     }
     let digits = mantissa.to_string();
+    if digits.len() > DIGITS {
+        return None;
+    }
     let exponent = digits.len() as i32 - 1 - decimals;
     let with_point = |digits: &str, whole: usize| match digits.split_at(whole) {
         (whole, "") => whole.to_owned(),

@@ -30,7 +30,7 @@ mod smaller;
 mod transient;
 pub(crate) mod validity;
 
-pub use convergence::{Singularity, converges, nearest_singularity};
+pub use convergence::{Singularity, converges, converges_everywhere, nearest_singularity};
 pub use driven::JudgedState;
 pub use transient::Followed;
 pub use validity::{Range, Reach};

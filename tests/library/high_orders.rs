@@ -501,6 +501,33 @@ fn rounded_closed_forms_are_written_with_fifteen_digits() {
     }
 }
 
+/// omega^2 of Morse's oscillator is `1 - (1 - exp(-A))^2`. At A = 6 its series of order 48 is right and loses nine digits: that is said,
+/// and the value is off by no more. At A = 1 nothing is lost, and nothing is said.
+#[test]
+fn digits_that_cancel_are_said_to_be_lost() {
+    let morse = Oscillator::parse("x'' + exp(-x) - exp(-2*x) = 0").expect("an equation");
+    let solution = frequency("x'' + exp(-x) - exp(-2*x) = 0", 60);
+    for (amplitude, is_said) in [(1, false), (6, true)] {
+        let at = format!("A = {amplitude}").parse().expect("a value");
+        let judged = judge(&morse, &solution, &at, 0.01).expect("a verdict");
+        let words = text::solution(&solution, Some(&judged), 0.01);
+        let said = words.split_once("rounding moves omega^2 by ");
+        assert_eq!(said.is_some(), is_said, "{words}");
+        let truth = 1.0 - (1.0 - f64::exp(-f64::from(amplitude))).powi(2);
+        let off = judged.frequency.expect("a frequency").powi(2) / truth - 1.0;
+        let allowed = match said {
+            Some((_, rest)) => rest
+                .split_whitespace()
+                .next()
+                .expect("a number")
+                .parse()
+                .expect("a number"),
+            None => 1e-12,
+        };
+        assert!(off.abs() <= allowed, "{amplitude}: {off} {allowed}");
+    }
+}
+
 /// omega of Duffing's equation at eps A^2 = s is sqrt(1 + s) agm(1, sqrt(1 - s/(2 (1 + s)))).
 #[test]
 fn a_quotient_of_high_degree_is_the_elliptic_integral() {

@@ -174,13 +174,13 @@ pub fn last_power(coefficients: &[Rational]) -> Option<usize> {
 
 /// Whether the coefficients fall faster than the powers of any number: the function has no singularity then, and its series converges
 /// everywhere. The slope of `-log |c_k|` is `log R + p/k` on a circle of convergence; where there is none it grows with `log k`, by as
-/// much over one doubling of k as over the next. What is left when the last sixth of the coefficients is taken away must say so too.
+/// much over one doubling of k as over the next. What is left when a sixth and a third of the coefficients are taken away must say so too.
 pub fn is_entire(coefficients: &[Rational]) -> bool {
-    if coefficients.len() <= FEWEST {
-        return false;
-    }
-    let fewer = coefficients.len() - coefficients.len() / 6;
-    steepens_evenly(coefficients) && steepens_evenly(&coefficients[..fewer])
+    /// The fewest coefficients that show it.
+    const FEWEST: usize = 24;
+    let count = coefficients.len();
+    let mut lengths = [count, count - count / 6, count - count / 3].into_iter();
+    count >= FEWEST && lengths.all(|length| steepens_evenly(&coefficients[..length]))
 }
 
 fn steepens_evenly(coefficients: &[Rational]) -> bool {
@@ -682,6 +682,12 @@ fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Sin
     const WORST_EXPONENT: f64 = 0.02;
     /// A place with more error, relatively, is none.
     const WORST: f64 = 0.05;
+    /// So many coefficients place a singularity whose power is not known.
+    const MANY: usize = 32;
+    /// Powers of the period below this may be those of a logarithm.
+    const SMALL_POWER: f64 = 0.2;
+    /// What multiplies the error there.
+    const SLOWEST: f64 = 10.0;
     let size_of = |own: &Followed| own.place.to_f64().norm();
     // By how much the coefficients grow faster than those of the singularity, over what that may be off: as a power of their number.
     let excess = |own: &Followed| {
@@ -740,6 +746,14 @@ fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Sin
         if !same && other.error < 100.0 * best.error.max(1e-6 * size) {
             return None;
         }
+    }
+    // Of few coefficients a singularity of no power that could be told may be one of several.
+    if exponent.is_none() && growth.sizes.last().is_none_or(|(highest, _)| *highest < MANY) {
+        return None;
+    }
+    // Powers of a logarithm, which look like a small power, and whatever shows no power at all are met slowly.
+    if exponent.is_none_or(|(value, error)| value.abs() > error && value.abs() < SMALL_POWER) {
+        error *= SLOWEST;
     }
     // Rounding is far below, but an approximant that is exact does not move at all.
     error = error.max(size * (-(bits as f64) / 6.0).exp2());

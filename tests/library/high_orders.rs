@@ -69,7 +69,9 @@ fn zeros_of_the_frequency_are_no_singularities() {
     let mut said = 0;
     for (equation, orders) in [
         ("x'' + 1/(1 + x)^2 - 1/(1 + x)^3 = 0", [24, 32, 40]),
-        ("x'' + 1 - 1/(1 + x)^2 = 0", [20, 24, 32]),
+        ("x'' + 1 - 1/(1 + x)^2 = 0", [20, 24, 40]),
+        // x = -1 is infinitely far up a logarithm.
+        ("x'' + 1 - 1/(1 + x) = 0", [24, 32, 48]),
     ] {
         for order in orders {
             let solution = frequency(equation, order);
@@ -81,14 +83,14 @@ fn zeros_of_the_frequency_are_no_singularities() {
             }
         }
     }
-    assert!(said >= 2, "{said}");
+    assert!(said >= 4, "{said}");
 }
 
 /// Morse's oscillator released from rest at A: `omega^2 = 1 - (1 - exp(-A))^2`, entire, with zeros at `-log 2 + 2 pi i k`. Where the
 /// small parameter changes the linear force alone, omega^2 ends.
 #[test]
 fn a_series_without_a_singularity_says_so() {
-    for order in [20, 24, 32, 48] {
+    for order in [24, 32, 48] {
         let solution = frequency("x'' + exp(-x) - exp(-2*x) = 0", order);
         assert_eq!(converges(&solution), None, "{order}");
         let note = converges_everywhere(&solution).expect("an entire function").to_string();

@@ -192,8 +192,10 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
     const WRITTEN_OUT: usize = 21;
     /// What is longer is no number of anybody's equation.
     const LONGEST_BITS: u64 = 4_000;
+    /// Digits that tell any two doubles apart: more of them are no number that was rounded or typed.
+    const DIGITS: usize = 17;
     let bits = [value.numer(), value.denom()].map(Integer::bits);
-    if bits.iter().sum::<u64>() < 36 || bits.iter().any(|bits| *bits > LONGEST_BITS) {
+    if bits.iter().sum::<u64>() < 30 || bits.iter().any(|bits| *bits > LONGEST_BITS) {
         return None;
     }
     let ten = Integer::from(10);
@@ -204,7 +206,7 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
     for factor in [2, 5].map(Integer::from) {
         let mut count = 0;
         while has_factor(&rest, &factor) {
-            rest = rest / &factor;
+            rest /= &factor;
             count += 1;
         }
         decimals = decimals.max(count);
@@ -214,10 +216,13 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
     }
     let mut mantissa = (value.abs() * Pow::pow(Rational::from_integer(ten.clone()), decimals)).to_integer();
     while decimals <= 0 && has_factor(&mantissa, &ten) && !mantissa.is_zero() {
-        mantissa = mantissa / &ten;
+        mantissa /= &ten;
         decimals -= 1;
     }
     let digits = mantissa.to_string();
+    if digits.len() > DIGITS {
+        return None;
+    }
     let exponent = digits.len() as i32 - 1 - decimals;
     let with_point = |digits: &str, whole: usize| match digits.split_at(whole) {
         (whole, "") => whole.to_owned(),

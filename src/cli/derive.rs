@@ -145,6 +145,8 @@ pub(super) fn solved(arguments: &Question) -> Result<(Oscillator, Option<Values>
             let mut derived = solve_at(oscillator, values, &options)?;
             derived.2.convergence = verify::converges(&derived.2);
             derived.2.validity.extend(notes);
+            let everywhere = verify::converges_everywhere(&derived.2);
+            derived.2.validity.extend(everywhere);
             Ok(derived)
         })
     })

@@ -27,3 +27,14 @@ pub mod trajectory;
 
 pub use crate::decimal::{decimal, significant};
 pub use crate::spelling::{is_invisible, printable, printable_in_line};
+
+use crate::exact::Doubles;
+use crate::series::FourierSeries;
+
+/// The size of a coefficient that is rounding noise of a motion in numbers: what quadrature leaves of harmonics that are not there.
+pub(crate) fn rounding_noise(motion: &FourierSeries<Doubles>) -> f64 {
+    /// Beside the largest swing.
+    const NOISE: f64 = 1e-14;
+    let swing = |k: usize| motion.cosine(k).mean().0.hypot(motion.sine(k).mean().0);
+    NOISE * (1..=motion.highest_harmonic()).map(swing).fold(0.0, f64::max)
+}

@@ -11,8 +11,13 @@
 //! With omega^2 for `f` the last is the period, which has a logarithm where a motion takes for ever, and the differential approximants
 //! take that as it is. All three kinds of approximant are made of all coefficients, and of fewer and fewer. Zeros
 //! that are no singularities of the series, and there are many, move from one to the next; one that stays is believed, and how far it
-//! moves is the estimate of its error. Which kind converges fastest is seen by that. It must stand where the growth of the coefficients
-//! says, and where several kinds have found it they must agree within their errors, or the error is what they differ by.
+//! moves is the estimate of its error. Which kind converges fastest is seen by that. Where several kinds have found it they must agree
+//! within their errors, or the error is what they differ by.
+//!
+//! A zero of `f` is singular for `f^(-1/2)`, with the power -1/2, -1, -3/2, ..., and not for `f`: it is left out. What is left must be
+//! what the coefficients show, `|c_k| ~ k^(-e-1)/R^k` for a power `e` on the circle `|s| = R`: one that would make them larger than they
+//! are is none, and one of them at least must make them as large as they are. Coefficients that fall [faster than the powers of any
+//! number](is_entire), or [end](last_power), belong to a function without a singularity.
 
 use std::cmp::Ordering;
 use std::fmt;
@@ -70,13 +75,16 @@ pub const FEWEST: usize = 16;
 /// assert_eq!(found.exponent.expect("its kind").value, ratio(1, 2));
 /// ```
 pub fn nearest(coefficients: &[Rational]) -> Option<Singularity> {
+    if is_entire(coefficients) || last_power(coefficients).is_some() {
+        return None;
+    }
     let growth = Growth::of(coefficients)?;
     let bits = BITS_AT_LEAST + BITS_EACH * coefficients.len();
     let scaled: Vec<BigFloat> = (0..)
         .zip(coefficients)
         .map(|(k, value)| BigFloat::of_fraction(value, bits).shifted(growth.unit * k))
         .collect();
-    let find = |kind: &Kind| Some((*kind, followed(*kind, &scaled, &growth)?));
+    let find = |kind: &Kind| followed(*kind, &scaled, &growth);
     let kinds = [Kind::Quadratic, Kind::Differential, Kind::OfInverseRoot];
     let found = each(&kinds, find).into_iter().flatten().collect();
     singularity(found, &growth, bits)
@@ -94,6 +102,8 @@ struct Growth {
     margin: f64,
     /// The variable is measured in `2^unit`.
     unit: i64,
+    /// The logarithms of the sizes in that unit, by the power; without those that vanish.
+    sizes: Vec<(usize, f64)>,
 }
 
 impl Growth {
@@ -104,24 +114,102 @@ impl Growth {
         if highest < FEWEST {
             return None;
         }
-        let root = |(k, value): (usize, &Rational)| {
-            let logarithm = Scaled::of_fraction(value).logarithm();
-            logarithm.is_finite().then_some(-logarithm / k as f64)
-        };
-        let last = coefficients.iter().enumerate().rev().take(LAST);
-        let logarithm = last.filter_map(root).reduce(f64::min)?;
-        let unit = (logarithm / std::f64::consts::LN_2).round();
+        let size = |(k, value): (usize, &Rational)| Some((k, logarithm(value)?));
+        let mut sizes: Vec<(usize, f64)> = coefficients.iter().enumerate().filter_map(size).collect();
+        let last = sizes.iter().filter(|(k, _)| *k > 0 && k + LAST > highest);
+        let root = last.map(|(k, size)| -size / *k as f64).reduce(f64::min)?;
+        let unit = (root / std::f64::consts::LN_2).round();
+        for (k, size) in &mut sizes {
+            *size += *k as f64 * unit * std::f64::consts::LN_2;
+        }
         let count = highest as f64;
         Some(Self {
-            radius: (logarithm - unit * std::f64::consts::LN_2).exp(),
+            radius: (root - unit * std::f64::consts::LN_2).exp(),
             // Coefficients fall like a power of their number beside the power of the radius.
-            margin: 2.5 * count.ln() / count + 0.05,
+            margin: 5.0 * count.ln() / count + 0.05,
             unit: unit as i64,
+            sizes,
         })
     }
 
     fn allows(&self, size: f64) -> bool {
         (size / self.radius).ln().abs() <= self.margin
+    }
+
+    /// The power of `k` with which `|c_k| radius^k` grows: of a singularity like `(s - s_0)^e` on the circle it is `-e - 1`. By the
+    /// largest of the last quarter and of the quarter before, for those of a pair go up and down.
+    fn power(&self, radius: f64) -> Option<f64> {
+        let highest = self.sizes.last()?.0 as f64;
+        let largest = |from: f64, to: f64| {
+            let within = self.sizes.iter().map(|(k, size)| (*k as f64, size));
+            let within = within.filter(|(k, _)| *k > from * highest && *k <= to * highest);
+            within
+                .map(|(k, size)| (k, size + k * radius.ln()))
+                .max_by(|a, b| a.1.total_cmp(&b.1))
+        };
+        let (before, last) = (largest(0.4, 0.7)?, largest(0.7, 1.0)?);
+        Some((last.1 - before.1) / (last.0 / before.0).ln())
+    }
+}
+
+/// The logarithm of the size; `None` of zero.
+fn logarithm(value: &Rational) -> Option<f64> {
+    Some(Scaled::of_fraction(value).logarithm()).filter(|logarithm| logarithm.is_finite())
+}
+
+/// The last power of a series that ends, with as many coefficients that vanish behind it as there are up to it; `None` of all others.
+///
+/// ```
+/// use lindstedt::{exact::ratio, series::singularity::last_power};
+///
+/// let mut coefficients = vec![ratio(0, 1); 40];
+/// coefficients[0] = ratio(1, 1);
+/// coefficients[3] = ratio(-2, 5);
+/// assert_eq!(last_power(&coefficients), Some(3));
+/// ```
+pub fn last_power(coefficients: &[Rational]) -> Option<usize> {
+    let last = coefficients.iter().rposition(|value| !value.is_zero())?;
+    (coefficients.len() > FEWEST && 2 * (last + 1) <= coefficients.len()).then_some(last)
+}
+
+/// Whether the coefficients fall faster than the powers of any number: the function has no singularity then, and its series converges
+/// everywhere. The slope of `-log |c_k|` is `log R + p/k` on a circle of convergence; where there is none it grows with `log k`, by as
+/// much over one doubling of k as over the next. What is left when a sixth and a third of the coefficients are taken away must say so too.
+pub fn is_entire(coefficients: &[Rational]) -> bool {
+    /// The fewest coefficients that show it.
+    const FEWEST: usize = 24;
+    let count = coefficients.len();
+    let mut lengths = [count, count - count / 6, count - count / 3].into_iter();
+    count >= FEWEST && lengths.all(|length| steepens_evenly(&coefficients[..length]))
+}
+
+fn steepens_evenly(coefficients: &[Rational]) -> bool {
+    /// How much steeper they must fall over one doubling of the power: an order of two has 0.35.
+    const STEEPER: f64 = 0.28;
+    /// How far that may be from the doubling before, as a factor.
+    const EVENLY: f64 = 2.0;
+    // The largest of each half: those of a pair go up and down.
+    let slope = |from: usize, to: usize| {
+        let middle = usize::midpoint(from, to);
+        let largest = |range: std::ops::Range<usize>| {
+            let sizes = range.filter_map(|k| Some((k, logarithm(&coefficients[k])?)));
+            sizes.max_by(|a, b| a.1.total_cmp(&b.1))
+        };
+        let (first, last) = (largest(from..middle)?, largest(middle..to)?);
+        Some((first.1 - last.1) / (last.0 - first.0) as f64)
+    };
+    let count = coefficients.len();
+    let slopes = [
+        slope(count / 8, count / 4),
+        slope(count / 4, count / 2),
+        slope(count / 2, count),
+    ];
+    match slopes {
+        [Some(first), Some(second), Some(third)] => {
+            let (before, after) = (second - first, third - second);
+            after > STEEPER && before * EVENLY > after && before < EVENLY * after
+        }
+        _ => false,
     }
 }
 
@@ -338,11 +426,53 @@ fn product(left: &[BigFloat], right: &[BigFloat], most: usize) -> Vec<BigFloat> 
 
 /// A zero that stays from one approximant to the next.
 struct Followed {
+    kind: Kind,
     place: Complex,
     error: f64,
     /// Of a differential approximant, with its error.
     exponent: Option<(f64, f64)>,
 }
+
+impl Followed {
+    /// The power of the distance with which f is singular there; `None` where it is not known.
+    fn power_of_function(&self) -> Option<f64> {
+        match (self.kind, self.exponent) {
+            (Kind::Quadratic, _) => Some(0.5),
+            (Kind::Differential, Some((value, _))) => Some(value),
+            (Kind::OfInverseRoot, Some((value, _))) if value < 0.0 => Some(-2.0 * value),
+            (Kind::OfInverseRoot, Some((value, _))) => Some(value),
+            (_, None) => None,
+        }
+    }
+
+    /// The order of a zero of f: there `f^(-1/2)` has the power -1/2, -1, ... and the motion takes for ever, but omega^2 goes through.
+    fn order_of_zero(&self) -> Option<f64> {
+        let (value, error) = self.exponent.filter(|_| self.kind == Kind::OfInverseRoot)?;
+        let order = (-2.0 * value).round();
+        (order >= 1.0 && (-2.0 * value - order).abs() <= (4.0 * error).max(WORST_POWER)).then_some(order)
+    }
+
+    /// Whether f is regular there, as far as this approximant and the zeros of f can tell.
+    fn is_regular(&self, zeros: &[(Complex64, f64)]) -> bool {
+        match (self.kind, self.exponent) {
+            (Kind::OfInverseRoot, Some((_, error))) => error > WORST_POWER || self.order_of_zero().is_some(),
+            (Kind::OfInverseRoot, None) => true,
+            // The power of the zero itself; what is singular at a zero has another one.
+            (Kind::Differential, Some((value, _))) => {
+                let place = self.place.to_f64();
+                let here = |zero: &&(Complex64, f64)| (zero.0 - place).norm() <= MOVES * place.norm();
+                zeros
+                    .iter()
+                    .filter(here)
+                    .any(|(_, order)| (value - order).abs() <= WORST_POWER)
+            }
+            _ => false,
+        }
+    }
+}
+
+/// Powers of the distance that are known no better say nothing of what a singularity is.
+const WORST_POWER: f64 = 0.1;
 
 /// A zero of one approximant.
 struct Zero {
@@ -350,19 +480,20 @@ struct Zero {
     exponent: Option<Complex64>,
 }
 
-/// The nearest zero that all approximants share, or all but one.
-fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Option<Followed> {
+/// The zeros that all approximants share, or all but a few.
+fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Vec<Followed> {
     /// So many coefficients show in doubles where to look.
     const FIRST: usize = 48;
     let length = kind.length(coefficients.len());
     let window = (length / 8).max(3);
     let first = length.saturating_sub(FIRST);
-    let last = [2 * window, window, window / 2 + 1, 2, 1, 0];
     let starts = [first, first + 2, first + 4];
-    let wanted: Vec<usize> = starts.into_iter().chain(last).collect();
+    let wanted: Vec<usize> = starts.into_iter().chain(0..=2 * window).collect();
     let all = approximants(kind, coefficients, &wanted);
     let at = |below: usize| all.iter().find(|own| own.0 == below).map(|own| &own.1);
     let follow = |start: Complex64| -> Option<Followed> {
+        /// Of so many approximants one may lack the zero.
+        const LACKING: usize = 6;
         let mut near = Complex::of(start, coefficients[0].bits());
         let mut missed = 0;
         for below in starts {
@@ -373,21 +504,28 @@ fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Option<Fo
             }
         }
         let mut zeros: Vec<(usize, Zero)> = vec![];
-        for below in last {
+        for below in (0..=2 * window).rev() {
             let from = zeros.last().map_or(&near, |(_, zero)| &zero.place);
             let found = at(below).and_then(|own| own.zero_near(from));
             zeros.extend(found.map(|zero| (below, zero)));
-        }
-        if zeros.len() + 1 < last.len() {
-            return None;
+            let done = 2 * window + 1 - below;
+            if done - zeros.len() > 1 + done / LACKING {
+                return None;
+            }
         }
         let (_, end) = zeros.pop()?;
         let error_of = |distance: &dyn Fn(&Zero, &Zero) -> f64| {
-            let recent = zeros.iter().filter(|(below, _)| *below <= window);
-            let recent = recent.map(|(_, zero)| distance(zero, &end)).fold(0.0, f64::max);
-            let before = distance(&zeros[0].1, &zeros[1].1);
+            let farthest = |from: usize, to: usize| {
+                let some = zeros.iter().filter(|(below, _)| (from..=to).contains(below));
+                some.map(|(_, zero)| distance(zero, &end)).fold(0.0, f64::max)
+            };
+            let (recent, before) = (farthest(0, window), farthest(window + 1, 2 * window));
             // What converges slowly is farther away than its last steps by how much longer the way is.
-            if 4.0 * recent <= before { recent } else { SLOW * recent }
+            if 8.0 * recent <= before {
+                FAST * recent
+            } else {
+                SLOW * recent
+            }
         };
         let exponent = end.exponent.map(|value| {
             let distance = |one: &Zero, other: &Zero| match (one.exponent, other.exponent) {
@@ -397,6 +535,7 @@ fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Option<Fo
             (value.re, error_of(&distance).max(value.im.abs()))
         });
         Some(Followed {
+            kind,
             error: error_of(&|one, other| one.place.distance(&other.place)),
             place: end.place,
             exponent,
@@ -404,7 +543,8 @@ fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Option<Fo
     };
     let mut candidates: Vec<Complex64> = vec![];
     for below in starts {
-        for candidate in candidates_of(&at(below)?.zero, growth) {
+        let Some(approximant) = at(below) else { continue };
+        for candidate in candidates_of(&approximant.zero, growth) {
             if candidates
                 .iter()
                 .all(|other| (other - candidate).norm() > MOVES * candidate.norm())
@@ -414,12 +554,14 @@ fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Option<Fo
         }
     }
     let found = candidates.into_iter().filter_map(follow);
-    let allowed = found.filter(|found| growth.allows(found.place.to_f64().norm()));
-    allowed.min_by(|a, b| a.place.to_f64().norm().total_cmp(&b.place.to_f64().norm()))
+    found
+        .filter(|found| growth.allows(found.place.to_f64().norm()))
+        .collect()
 }
 
-/// What multiplies the last step of a slow convergence, of which a step is an eighth of the way.
+/// What multiplies the last step of a slow convergence, of which a step is an eighth of the way, and of a fast one.
 const SLOW: f64 = 8.0;
+const FAST: f64 = 4.0;
 
 /// How far a zero may move between approximants, relatively.
 const MOVES: f64 = 0.05;
@@ -487,7 +629,7 @@ fn derivatives(polynomial: &[BigFloat], place: &Complex) -> [Complex; 3] {
 
 /// Zeros of a polynomial about the circle of convergence, in the upper half plane: where Newton's iteration leads from a lattice.
 fn candidates_of(polynomial: &[BigFloat], growth: &Growth) -> Vec<Complex64> {
-    const RADII: usize = 9;
+    const RADII: usize = 15;
     const ANGLES: usize = 25;
     const ITERATIONS: usize = 40;
     let Some(largest) = polynomial.iter().filter_map(BigFloat::exponent).max() else {
@@ -534,28 +676,67 @@ fn candidates_of(polynomial: &[BigFloat], growth: &Growth) -> Vec<Complex64> {
     found
 }
 
-/// The best of what the kinds of approximants have found, with an error that covers what they differ by.
-fn singularity(mut found: Vec<(Kind, Followed)>, growth: &Growth, bits: usize) -> Option<Singularity> {
+/// The nearest singularity of those that the kinds of approximants have found, with an error that covers what they differ by.
+fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Singularity> {
     /// An exponent with more error is not worth saying.
     const WORST_EXPONENT: f64 = 0.02;
     /// A place with more error, relatively, is none.
     const WORST: f64 = 0.05;
-    let exponent = found
+    /// So many coefficients place a singularity whose power is not known.
+    const MANY: usize = 32;
+    /// Powers of the period below this may be those of a logarithm.
+    const SMALL_POWER: f64 = 0.2;
+    /// What multiplies the error there.
+    const SLOWEST: f64 = 10.0;
+    let size_of = |own: &Followed| own.place.to_f64().norm();
+    // By how much the coefficients grow faster than those of the singularity, over what that may be off: as a power of their number.
+    let excess = |own: &Followed| {
+        let power = own.power_of_function()? + 1.0;
+        Some((growth.power(size_of(own))? + power) / (1.25 + 0.25 * power.abs()))
+    };
+    let zero = |own: &Followed| Some((own.place.to_f64(), own.order_of_zero()?));
+    let zeros: Vec<(Complex64, f64)> = found.iter().filter_map(zero).collect();
+    let singular = |own: &Followed| !own.is_regular(&zeros) && own.error <= WORST * size_of(own);
+    // What would make larger coefficients than there are is none.
+    let found: Vec<(Followed, f64)> = found
+        .into_iter()
+        .filter(singular)
+        .filter_map(|own| excess(&own).map(|excess| (own, excess)))
+        .filter(|(_, excess)| *excess >= -1.0)
+        .collect();
+    // Some of them must be all that the coefficients show. A nearer one may be hidden behind it.
+    if !found.iter().any(|(_, excess)| *excess <= 1.0) {
+        return None;
+    }
+    let nearest = found
         .iter()
-        .find(|(kind, _)| *kind == Kind::OfInverseRoot)
-        .and_then(|(_, own)| own.exponent)
-        .filter(|(_, error)| *error < WORST_EXPONENT);
+        .map(|(own, _)| size_of(own) + own.error)
+        .fold(f64::INFINITY, f64::min);
+    let on_circle = |own: &Followed| size_of(own) - own.error <= nearest * (1.0 + MOVES);
+    let mut found: Vec<Followed> = found.into_iter().map(|(own, _)| own).filter(on_circle).collect();
+    let exponent_by = |found: &[Followed], wanted: Kind| {
+        let own = found.iter().filter(|own| own.kind == wanted);
+        let best = own.min_by(|a, b| a.error.total_cmp(&b.error))?;
+        best.exponent.filter(|(_, error)| *error < WORST_EXPONENT)
+    };
+    let exponent = exponent_by(&found, Kind::OfInverseRoot);
+    let power = exponent_by(&found, Kind::Differential);
     // What is no square root the quadratic approximants do not meet, nor those of omega^2 what is a logarithm of the period.
-    if exponent.is_some_and(|(value, error)| (value - 0.5).abs() > 2.0 * error) {
-        found.retain(|(kind, _)| *kind != Kind::Quadratic);
+    if [exponent, power]
+        .into_iter()
+        .flatten()
+        .any(|(value, error)| (value - 0.5).abs() > 2.0 * error)
+    {
+        let others = found.iter().any(|own| own.kind != Kind::Quadratic);
+        found.retain(|own| own.kind != Kind::Quadratic || !others);
     }
     if exponent.is_some_and(|(value, error)| value.abs() <= error) {
-        found.retain(|(kind, _)| *kind != Kind::Differential);
+        found.retain(|own| own.kind != Kind::Differential);
     }
-    let (_, best) = found.iter().min_by(|a, b| a.1.error.total_cmp(&b.1.error))?;
+    let best = found.iter().min_by(|a, b| a.error.total_cmp(&b.error))?;
     let size = best.place.to_f64().norm();
     let mut error = best.error;
-    for (_, other) in &found {
+    for other in &found {
         let distance = other.place.distance(&best.place);
         let same = distance <= MOVES * size;
         if same && distance > best.error + other.error {
@@ -565,6 +746,14 @@ fn singularity(mut found: Vec<(Kind, Followed)>, growth: &Growth, bits: usize) -
         if !same && other.error < 100.0 * best.error.max(1e-6 * size) {
             return None;
         }
+    }
+    // Of few coefficients a singularity of no power that could be told may be one of several.
+    if exponent.is_none() && growth.sizes.last().is_none_or(|(highest, _)| *highest < MANY) {
+        return None;
+    }
+    // Powers of a logarithm, which look like a small power, and whatever shows no power at all are met slowly.
+    if exponent.is_none_or(|(value, error)| value.abs() > error && value.abs() < SMALL_POWER) {
+        error *= SLOWEST;
     }
     // Rounding is far below, but an approximant that is exact does not move at all.
     error = error.max(size * (-(bits as f64) / 6.0).exp2());

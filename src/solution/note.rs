@@ -2,10 +2,12 @@
 
 use std::fmt;
 
+use num_traits::One as _;
+
 pub use super::linear_drive::LinearDrive;
 use super::{Definition, Degrees, LeadingCycle, Method};
 use crate::decimal::decimal;
-use crate::exact::Polynomial;
+use crate::exact::{Monomial, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::symbol::Symbol;
 
@@ -85,6 +87,15 @@ pub enum Note {
         step: u32,
         /// The degree through which they agree.
         order: u32,
+    },
+    /// The series of omega^2 has no singularity, as far as its coefficients show.
+    ConvergesEverywhere {
+        /// What the series runs in.
+        variable: Monomial,
+        /// The highest power of it that was looked at.
+        highest: usize,
+        /// The last power of it that is there, where the series ends.
+        last: Option<Monomial>,
     },
     /// The real zeros of the denominator of a quotient.
     Poles(Poles),
@@ -474,6 +485,28 @@ impl fmt::Display for Note {
                 at_turning,
                 range,
             } => bounds(formatter, at_rest, at_turning, range),
+            Self::ConvergesEverywhere {
+                variable,
+                highest,
+                last,
+            } => {
+                let words = |monomial: &Monomial| Expr::from(&Polynomial::term(monomial.clone(), Rational::one()));
+                match last {
+                    Some(last) => write!(
+                        formatter,
+                        "the series converges everywhere: omega^2 ends with {}, none of the powers of {} up to {} stands behind it",
+                        words(last),
+                        words(variable),
+                        words(&variable.power(i32::try_from(*highest).unwrap_or(i32::MAX)))
+                    ),
+                    None => write!(
+                        formatter,
+                        "the series converges everywhere: by {highest} coefficients, which fall faster than the powers of any number, \
+                         omega^2 has no singularity in {}",
+                        words(variable)
+                    ),
+                }
+            }
             Self::AgreesThrough {
                 degrees,
                 small,

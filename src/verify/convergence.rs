@@ -22,14 +22,14 @@ use super::amplitude_series::amplitude_series;
 use super::validity::Range;
 use crate::decimal::{decimal, significant};
 use crate::exact::rational::to_f64;
-use crate::exact::{Doubles, Polynomial, Rational};
+use crate::exact::{Doubles, Monomial, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::method::power_series::PowerSeries;
 use crate::method::secular::{Amplitude, Detuning, ForceTerm, Scheme, expand};
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::recurrence::numeric_taylor;
 use crate::series::{FourierSeries, singularity};
-use crate::solution::{AmplitudeConvention, Convergence, Solution};
+use crate::solution::{AmplitudeConvention, Convergence, Counts, Note, Solution};
 use crate::symbol::Symbol;
 
 /// Coefficients of the series from which its radius of convergence is estimated.
@@ -63,22 +63,55 @@ const AGREEMENT: f64 = 0.01;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn converges(solution: &Solution) -> Option<Convergence> {
+    let (variable, coefficients) = exact_coefficients(solution)?;
+    Some(Convergence {
+        variable,
+        highest: coefficients.len() - 1,
+        nearest: singularity::nearest(&coefficients)?,
+    })
+}
+
+/// That the series of omega^2 in a solution has no singularity, by its own exact coefficients: that it ends, or that they fall faster
+/// than the powers of any number; `None` where they say neither.
+///
+/// ```
+/// use lindstedt::{Options, Oscillator, solve, verify::{converges, converges_everywhere}};
+///
+/// // omega^2 = 1 - (1 - exp(-A))^2
+/// let morse = Oscillator::parse("x'' + exp(-x) - exp(-2*x) = 0")?;
+/// let solution = solve(&morse, &Options { order: Some(24), ..Options::default() })?;
+/// assert!(converges(&solution).is_none() && converges_everywhere(&solution).is_some());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn converges_everywhere(solution: &Solution) -> Option<Note> {
+    let (variable, coefficients) = exact_coefficients(solution)?;
+    let last = singularity::last_power(&coefficients);
+    (last.is_some() || singularity::is_entire(&coefficients)).then(|| Note::ConvergesEverywhere {
+        last: last.map(|last| variable.power(i32::try_from(last).unwrap_or(1))),
+        variable,
+        highest: coefficients.len() - 1,
+    })
+}
+
+/// The series of omega^2 in the highest power of its variable that all of its terms have, with exact coefficients.
+fn exact_coefficients(solution: &Solution) -> Option<(Monomial, Vec<Rational>)> {
     // Rounded coefficients have no more digits to give than those that are computed below.
     if solution.numerical {
         return None;
     }
     let (mut variable, mut coefficients) = PowerSeries::of(solution, true).in_one_variable()?;
+    if solution.method.counts() == Counts::Powers {
+        // The powers to the order of the answer that are not in the law are zero.
+        let count = solution.order as usize / usize::try_from(PowerSeries::of(solution, true).step).ok()?;
+        coefficients.resize((count + 1).max(coefficients.len()), Rational::zero());
+    }
     let powers = coefficients.iter().enumerate().filter(|(_, value)| !value.is_zero());
     let step = powers.fold(0, |common: usize, (power, _)| common.gcd(&power));
     if step > 1 {
         variable = variable.power(i32::try_from(step).ok()?);
         coefficients = coefficients.into_iter().step_by(step).collect();
     }
-    Some(Convergence {
-        variable,
-        highest: coefficients.len() - 1,
-        nearest: singularity::nearest(&coefficients)?,
-    })
+    Some((variable, coefficients))
 }
 
 /// The radius of convergence of the series of `solution` in its small parameter, in words; nothing where its coefficients show

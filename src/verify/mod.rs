@@ -31,7 +31,7 @@ mod smaller;
 mod transient;
 pub(crate) mod validity;
 
-pub use convergence::{Singularity, converges, nearest_singularity};
+pub use convergence::{Singularity, converges, converges_everywhere, nearest_singularity};
 pub use driven::JudgedState;
 pub use transient::Followed;
 pub use validity::{Range, Reach};
@@ -416,6 +416,7 @@ pub(crate) fn judge_to(
             .filter(|_| attraction(solution, &numbers) != Some(0.0))
             .into_iter()
             .chain(remark)
+            .chain(cancellation(solution, &numbers, found.as_ref(), max_deviation))
             .chain(far)
             .collect(),
         chosen: found.map_or_else(Vec::new, |found| found.chosen),
@@ -490,6 +491,33 @@ fn in_convention_of(
         wanted.symbol()
     );
     Ok(Some((values, in_words)))
+}
+
+/// What cancellation costs of the digits of the verdict, where the formula is summed far out.
+fn cancellation(
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    found: Option<&Numbers>,
+    max_deviation: Option<f64>,
+) -> Vec<validity::Range> {
+    /// Relative errors of less are said to be less.
+    const SHOWN: f64 = 1e-9;
+    /// Deviations have three digits.
+    const OF_DEVIATION: f64 = 5e-4;
+    let said = |what: &str, rounding: f64, of: &str| validity::Range {
+        text: format!(
+            "terms of high order cancel here: rounding moves {what} by {} of {of}",
+            significant(rounding, 1)
+        ),
+        outside: false,
+    };
+    let law = found.map(|found| found.rounding).filter(|rounding| *rounding > SHOWN);
+    let value_of = |symbol: Symbol| numbers.get(&symbol).copied();
+    let motion = max_deviation.zip(solution.rounding_of_motion_at(&value_of));
+    let motion = motion.filter(|(deviation, rounding)| *rounding > (OF_DEVIATION * deviation).max(SHOWN));
+    let law = law.map(|rounding| said("omega^2", rounding, "itself"));
+    let motion = motion.map(|(_, rounding)| said("the motion", rounding, "the amplitude"));
+    law.into_iter().chain(motion).collect()
 }
 
 /// An error where the amplitude of a free motion changes.

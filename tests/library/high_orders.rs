@@ -3,9 +3,9 @@
 use lindstedt::exact::{Integer, Rational, ratio, to_f64};
 use lindstedt::export::text;
 use lindstedt::method::numbers::evaluate;
-use lindstedt::series::singularity::Estimate;
+use lindstedt::series::singularity::{Estimate, is_entire, last_power, nearest};
 use lindstedt::solution::{Convergence, Degrees};
-use lindstedt::verify::{converges, nearest_singularity};
+use lindstedt::verify::{converges, converges_everywhere, nearest_singularity};
 use lindstedt::{Method, Options, Oscillator, Solution, Symbol, judge, solve};
 
 /// The frequency alone to an order.
@@ -60,6 +60,105 @@ fn conservative_motions_are_singular_on_their_separatrix() {
     let (symbol, radius) = found("x'' + sin(x) = 0", 80).in_symbol().expect("the amplitude alone");
     assert_eq!(symbol, Symbol::new("A"));
     assert!(holds(&radius, &pi), "{radius:?}");
+}
+
+/// Where omega^2 itself has a zero the motion takes for ever, and the series converges beyond. Kepler's radial motion has
+/// `omega^2 = (1 + 2 A)^3/(1 + A)^6`, by its third law; in a field `1 - 1/x^2` the motion meets its singular place at A = -1 as well.
+#[test]
+fn zeros_of_the_frequency_are_no_singularities() {
+    let mut said = 0;
+    for (equation, orders) in [
+        ("x'' + 1/(1 + x)^2 - 1/(1 + x)^3 = 0", [24, 32, 40]),
+        ("x'' + 1 - 1/(1 + x)^2 = 0", [20, 24, 40]),
+        // x = -1 is infinitely far up a logarithm.
+        ("x'' + 1 - 1/(1 + x) = 0", [24, 32, 48]),
+    ] {
+        for order in orders {
+            let solution = frequency(equation, order);
+            assert!(converges_everywhere(&solution).is_none(), "{equation} {order}");
+            if let Some(found) = converges(&solution) {
+                said += 1;
+                let one = ratio(1, 1);
+                assert!(holds(&found.nearest.radius, &one), "{equation} {order}: {found:?}");
+            }
+        }
+    }
+    assert!(said >= 4, "{said}");
+}
+
+/// Morse's oscillator released from rest at A: `omega^2 = 1 - (1 - exp(-A))^2`, entire, with zeros at `-log 2 + 2 pi i k`. Where the
+/// small parameter changes the linear force alone, omega^2 ends.
+#[test]
+fn a_series_without_a_singularity_says_so() {
+    for order in [24, 32, 48] {
+        let solution = frequency("x'' + exp(-x) - exp(-2*x) = 0", order);
+        assert_eq!(converges(&solution), None, "{order}");
+        let note = converges_everywhere(&solution).expect("an entire function").to_string();
+        assert!(note.starts_with("the series converges everywhere"), "{note}");
+    }
+    let linear = frequency("x'' + x + eps*x = 0", 30);
+    assert_eq!(converges(&linear), None);
+    let note = converges_everywhere(&linear).expect("an end").to_string();
+    assert!(note.contains("omega^2 ends with eps,"), "{note}");
+    // What has a singularity does not converge everywhere.
+    for (equation, order) in [("x'' + sin(x) = 0", 60), ("x'' + x + x^2 = 0", 24), (VAN_DER_POL, 60)] {
+        assert_eq!(converges_everywhere(&frequency(equation, order)), None, "{equation}");
+    }
+}
+
+/// `(1 - s/place)^power` to a degree.
+fn planted(place: &Rational, power: &Rational, degree: usize) -> Vec<Rational> {
+    let mut coefficients = vec![ratio(1, 1)];
+    for k in 1..=degree as i64 {
+        let last = &coefficients[k as usize - 1];
+        coefficients.push(last * (ratio(k - 1, 1) - power) / (ratio(k, 1) * place));
+    }
+    coefficients
+}
+
+/// `exp(rate*s)` to a degree.
+fn exponential(rate: &Rational, degree: usize) -> Vec<Rational> {
+    let mut coefficients = vec![ratio(1, 1)];
+    for k in 1..=degree as i64 {
+        coefficients.push(&coefficients[k as usize - 1] * rate / ratio(k, 1));
+    }
+    coefficients
+}
+
+fn multiplied(left: &[Rational], right: &[Rational]) -> Vec<Rational> {
+    let term = |n: usize| (0..=n).map(|k| &left[k] * &right[n - k]).sum();
+    (0..left.len()).map(term).collect()
+}
+
+/// Strong and weak singularities times an entire function, with another singularity beyond or a zero of the function before: the error
+/// is never larger than is said.
+#[test]
+fn the_error_of_a_radius_is_never_larger_than_said() {
+    let (near, far, zero) = (ratio(-7, 5), ratio(-3, 1), ratio(1, 2));
+    let mut said = 0;
+    for degree in [24, 36] {
+        for (numerator, denominator) in [(-6, 1), (-1, 2), (1, 2), (5, 2)] {
+            let power = ratio(numerator, denominator);
+            let singular = multiplied(&planted(&near, &power, degree), &exponential(&ratio(1, 3), degree));
+            let beyond = planted(&far, &ratio(1, 4), degree);
+            let sum: Vec<Rational> = singular.iter().zip(&beyond).map(|(one, other)| one + other).collect();
+            let through_zero = multiplied(&singular, &planted(&zero, &ratio(1, 1), degree));
+            for (name, coefficients) in [("sum", sum), ("zero", through_zero)] {
+                assert!(
+                    !is_entire(&coefficients) && last_power(&coefficients).is_none(),
+                    "{name} {power} {degree}"
+                );
+                if let Some(found) = nearest(&coefficients) {
+                    said += 1;
+                    assert!(
+                        holds(&found.radius, &-near.clone()),
+                        "{name} {power} {degree}: {found:?}"
+                    );
+                }
+            }
+        }
+    }
+    assert!(said >= 8, "{said}");
 }
 
 /// C. M. Andersen and J. F. Geer, SIAM J. Appl. Math. 42 (1982) 678-693: branch points of omega in mu^2 at a distance of about 3.42.
@@ -401,6 +500,33 @@ fn rounded_closed_forms_are_written_with_fifteen_digits() {
             let allowed = if solution.degrees.is_some() { 1e-9 } else { 1e-3 };
             assert!(off.abs() < allowed, "{equation}: {off} {words}");
         }
+    }
+}
+
+/// omega^2 of Morse's oscillator is `1 - (1 - exp(-A))^2`. At A = 6 its series of order 48 is right and loses nine digits: that is said,
+/// and the value is off by no more. At A = 1 nothing is lost, and nothing is said.
+#[test]
+fn digits_that_cancel_are_said_to_be_lost() {
+    let morse = Oscillator::parse("x'' + exp(-x) - exp(-2*x) = 0").expect("an equation");
+    let solution = frequency("x'' + exp(-x) - exp(-2*x) = 0", 60);
+    for (amplitude, is_said) in [(1, false), (6, true)] {
+        let at = format!("A = {amplitude}").parse().expect("a value");
+        let judged = judge(&morse, &solution, &at, 0.01).expect("a verdict");
+        let words = text::solution(&solution, Some(&judged), 0.01);
+        let said = words.split_once("rounding moves omega^2 by ");
+        assert_eq!(said.is_some(), is_said, "{words}");
+        let truth = 1.0 - (1.0 - f64::exp(-f64::from(amplitude))).powi(2);
+        let off = judged.frequency.expect("a frequency").powi(2) / truth - 1.0;
+        let allowed = match said {
+            Some((_, rest)) => rest
+                .split_whitespace()
+                .next()
+                .expect("a number")
+                .parse()
+                .expect("a number"),
+            None => 1e-12,
+        };
+        assert!(off.abs() <= allowed, "{amplitude}: {off} {allowed}");
     }
 }
 

@@ -8,6 +8,7 @@ use num_traits::{Signed as _, Zero as _};
 use super::{NoCode, Program, Routine, Statement, Value};
 use crate::exact::rational::from_f64;
 use crate::exact::{Doubles, Polynomial, Rational};
+use crate::export::rounding_noise;
 use crate::expr::{Expr, Function, Node, fresh};
 use crate::method::numbers::{is_odd_equation, law_takes_size, motion_takes_size};
 use crate::method::table::{Entry, Motion};
@@ -377,18 +378,11 @@ fn motion(oscillator: &Oscillator, solution: &Solution, names: &Names, of_freque
         let mut body = Vec::new();
         match sign {
             Sign::Any => {}
-            Sign::Opposite => {
+            Sign::Opposite | Sign::HalfPeriod => {
                 let sign = Expr::function(Function::Sign, vec![Expr::from(names.amplitude)]);
                 let sign = sign.unwrap_or_else(|_| Expr::one());
                 body.push(Statement::Variable(names.sign, Value::Expression(sign)));
                 body.push(Statement::Size(names.amplitude));
-            }
-            Sign::Positive => {
-                body.push(Statement::Positive(
-                    names.amplitude,
-                    names.amplitude,
-                    "the formula is written for A > 0",
-                ));
             }
         }
         body.extend(variables(definitions.clone()));
@@ -404,22 +398,50 @@ fn motion(oscillator: &Oscillator, solution: &Solution, names: &Names, of_freque
             names.omega,
             &scale,
         ));
-        body.push(angle(names));
+        body.push(match sign {
+            Sign::HalfPeriod => Statement::Variable(names.theta, Value::Expression(turned_angle(names))),
+            Sign::Any | Sign::Opposite => angle(names),
+        });
         Beginning { arguments, body }
     };
     let symbols = |(_, cosine, sine): &(usize, Polynomial, Polynomial)| [cosine.symbols(), sine.symbols()];
-    let beginnings = [
-        beginning(harmonics.iter().flat_map(symbols).flatten().collect()),
-        beginning(moving.clone().flat_map(symbols).flatten().collect()),
-    ];
+    let all: BTreeSet<Symbol> = harmonics.iter().flat_map(symbols).flatten().collect();
+    let beginnings = match sign {
+        // What lets the turned motion begin at its amplitude is made of all harmonics.
+        Sign::HalfPeriod => {
+            let all = &all | &solution.equilibrium.symbols();
+            [beginning(all.clone()), beginning(all)]
+        }
+        Sign::Any | Sign::Opposite => [
+            beginning(all),
+            beginning(moving.clone().flat_map(symbols).flatten().collect()),
+        ],
+    };
+    let start = match sign {
+        Sign::HalfPeriod => Some(missing_at_start(solution, names, &harmonics)),
+        Sign::Any | Sign::Opposite => None,
+    };
     let times = |polynomial: &Polynomial, factor: i64| {
         let factor = Rational::from_integer(factor.into());
         let scaled: Polynomial = polynomial.map(|number| number * &factor);
         (!scaled.is_zero()).then(|| ordered(solution, &scaled))
     };
+    // The first harmonic with what lets the turned motion begin at its amplitude.
+    let cosines = |k: usize, cosine: &Polynomial, factor: i64| match (&start, k) {
+        (Some(start), 1) => {
+            let start = Value::Expression(Expr::from(factor) * start);
+            let own = times(cosine, factor).into_iter();
+            let parts = own.flat_map(|own| match own {
+                Value::Sum(parts) => parts,
+                other => vec![other],
+            });
+            Some(Value::Sum(parts.chain([start]).collect()))
+        }
+        _ => times(cosine, factor),
+    };
     let displaced = harmonics.iter().map(|(k, cosine, sine)| Harmonic {
         k: *k,
-        cosine: times(cosine, 1),
+        cosine: cosines(*k, cosine, 1),
         sine: times(sine, 1),
     });
     let moving = moving.map(|(k, cosine, sine)| {
@@ -427,7 +449,7 @@ fn motion(oscillator: &Oscillator, solution: &Solution, names: &Names, of_freque
         Harmonic {
             k: *k,
             cosine: times(sine, factor),
-            sine: times(cosine, -factor),
+            sine: cosines(*k, cosine, -factor),
         }
     });
     let before = match sign {
@@ -455,6 +477,25 @@ fn written_motion(solution: &Solution, names: &Names, motion: &Expr) -> Result<[
         routine(DISPLACEMENT, ABOUT_DISPLACEMENT, motion),
         routine(VELOCITY, ABOUT_VELOCITY, &velocity),
     ])
+}
+
+/// `omega*t`, for a negative amplitude half a period later.
+fn turned_angle(names: &Names) -> Expr {
+    let half = Expr::pi() * Expr::number(Rational::new(1.into(), 2.into()));
+    Expr::from(names.omega) * Expr::from(names.time) + (Expr::one() - Expr::from(names.sign)) * half
+}
+
+/// What stands before `cos(theta)` beside the first harmonic, for a negative amplitude: half a period later the even harmonics have kept
+/// their signs, and the motion begins at its amplitude with it.
+fn missing_at_start(solution: &Solution, names: &Names, harmonics: &[(usize, Polynomial, Polynomial)]) -> Expr {
+    let half = Expr::number(Rational::new(1.into(), 2.into()));
+    let turned = harmonics.iter().map(|(k, cosine, _)| {
+        let cosine = Expr::from(cosine);
+        if k % 2 == 1 { -cosine } else { cosine }
+    });
+    let begins = &solution.equilibrium - &Expr::from(names.amplitude);
+    // The angle is turned: its cosine at the start is -1.
+    (Expr::one() - Expr::from(names.sign)) * half * (Expr::sum(turned) - begins)
 }
 
 /// `theta = omega*t`.
@@ -520,8 +561,8 @@ enum Sign {
     Any,
     /// With the opposite sign.
     Opposite,
-    /// Not at all.
-    Positive,
+    /// Half a period later, with what it lacks then at its start.
+    HalfPeriod,
 }
 
 fn sign_of_motion(oscillator: &Oscillator, solution: &Solution, names: &Names) -> Sign {
@@ -546,7 +587,7 @@ fn sign_of_motion(oscillator: &Oscillator, solution: &Solution, names: &Names) -
     match is_odd {
         true if harmonics.iter().all(|entry| turns(&entry.1) && turns(&entry.2)) => Sign::Any,
         true => Sign::Opposite,
-        false => Sign::Positive,
+        false => Sign::HalfPeriod,
     }
 }
 
@@ -560,14 +601,11 @@ fn is_of_amplitude(solution: &Solution, symbol: Symbol, names: &Names) -> bool {
 
 /// The motion at given values.
 fn motion_in_numbers(names: &Names, motion: &FourierSeries<Doubles>, frequency: f64) -> [Routine; 2] {
-    /// Beside the largest: less is lost in rounding.
-    const SMALLEST: f64 = 1e-18;
     let coefficients: Vec<(usize, f64, f64)> = (0..=motion.highest_harmonic())
         .map(|k| (k, motion.cosine(k).mean().0, motion.sine(k).mean().0))
         .collect();
-    let sizes = coefficients.iter().flat_map(|entry| [entry.1.abs(), entry.2.abs()]);
-    let least = SMALLEST * sizes.fold(0.0, f64::max);
-    let value = |coefficient: f64| (coefficient.abs() > least).then(|| number(coefficient));
+    let noise = rounding_noise(motion);
+    let value = |coefficient: f64| (coefficient.abs() > noise).then(|| number(coefficient));
     let displaced = coefficients.iter().map(|&(k, cosine, sine)| Harmonic {
         k,
         cosine: value(cosine),

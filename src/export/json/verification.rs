@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::number::{finite, is_nothing};
 use super::{Constant, Map};
 use crate::exact::Doubles;
+use crate::export::rounding_noise;
 use crate::series::FourierSeries;
 use crate::symbol::Symbol;
 use crate::values::Values;
@@ -212,8 +213,6 @@ fn steady_state(judged: &verify::JudgedState) -> SteadyState {
 
 /// The harmonics of a motion in numbers but for rounding noise; nothing where one of them is not finite.
 fn motion(motion: &FourierSeries<Doubles>) -> Option<Vec<HarmonicValue>> {
-    /// Beside the largest swing: what quadrature leaves of harmonics that are not there.
-    const NOISE: f64 = 1e-14;
     let entry = |harmonic: usize| HarmonicValue {
         harmonic,
         cos: motion.cosine(harmonic).mean().0,
@@ -221,10 +220,10 @@ fn motion(motion: &FourierSeries<Doubles>) -> Option<Vec<HarmonicValue>> {
     };
     let size = |entry: &HarmonicValue| entry.cos.hypot(entry.sin);
     let entries: Vec<HarmonicValue> = (0..=motion.highest_harmonic()).map(entry).collect();
-    let largest = entries.iter().skip(1).map(size).fold(0.0, f64::max);
+    let noise = rounding_noise(motion);
     entries
         .into_iter()
-        .filter(|entry| size(entry) > NOISE * largest || !size(entry).is_finite())
+        .filter(|entry| size(entry) > noise || !size(entry).is_finite())
         .map(|entry| size(&entry).is_finite().then_some(entry))
         .collect()
 }

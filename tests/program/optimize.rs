@@ -213,7 +213,8 @@ fn a_main_mass_and_its_pendulum_have_the_numbers_of_their_own_motion() {
             (seconds / (rest * primary.units.time()) - 1.0).abs() < 1e-9,
             "{start}: {seconds}"
         );
-        let impacts: Vec<_> = motion.impacts.iter().filter(|impact| impact.entry < rest).collect();
+        let until = motion.pendulum_rest_time().expect("it rests");
+        let impacts: Vec<_> = motion.impacts.iter().filter(|impact| impact.entry < until).collect();
         assert!(design.impacts == impacts.len() && !impacts.is_empty(), "{start}");
         // The force by looking at the states.
         let force = impacts.iter().flat_map(|impact| {

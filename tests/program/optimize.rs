@@ -294,7 +294,12 @@ fn designs_that_keep_hard_limits_are_found() {
         }
         assert!(!said.contains("as good as the best"), "{said}");
     }
-    let missed = run(&["optimize", "tests/errors/optimize-death-finds-none.toml"]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("death.toml");
+    let text =
+        "[limits]\nmax_peak_force = 30\n[genetic]\npenalty = \"death\"\npopulation = 10\nruns = 1\ngenerations = 10\n";
+    std::fs::write(&file, text).expect("a file");
+    let missed = run(&["optimize", file.to_str().expect("a path in text")]);
     let message = String::from_utf8_lossy(&missed.stderr).into_owned();
     assert!(missed.status.code() == Some(1) && missed.stdout.is_empty());
     assert!(

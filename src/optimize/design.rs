@@ -71,7 +71,7 @@ pub struct Design {
     pub units: Units,
     /// The rest time of the pendulum, in units of 1/omega.
     pub rest_time: Result<f64, NoRest>,
-    /// The contacts until it rests; beside a main mass until that rests. All of them where it does not.
+    /// The contacts until it rests; all of them where it does not.
     pub impacts: usize,
     /// The hardest of them; `None` where there was none, or it was not asked for.
     pub hardest: Option<HardestContact>,
@@ -274,12 +274,12 @@ impl DesignMotion<'_> {
         let settings = PrimarySettings {
             duration: settings.duration,
             phase_limit: settings.maximum_steps,
-            stop_at_rest: !(self.question.needs_pendulum_rest() || self.route == Route::Integration && self.contact),
+            stop_at_rest: !(self.question.follows_pendulum() || self.route == Route::Integration && self.contact),
             interrupt: settings.interrupt,
             ..PrimarySettings::default()
         };
         let motion = simulate_primary(case, &settings).map_err(|error| error.to_string())?;
-        let rest = motion.rest_time();
+        let rest = motion.pendulum_rest_time();
         let impacts = motion.impacts.iter();
         let impacts = impacts.filter(|impact| rest.is_err() || rest.is_ok_and(|rest| impact.entry < rest));
         let hardest = self.contact.then(|| {
@@ -291,10 +291,10 @@ impl DesignMotion<'_> {
             HardestContact::from_contacts(&self.model, &self.units, contacts)
         });
         Ok(Followed {
-            rest_time: motion.pendulum_rest_time(),
+            rest_time: rest,
             impacts: impacts.count(),
             hardest: hardest.flatten(),
-            primary_rest_time: Some(rest.map(|rest| rest * self.units.time())),
+            primary_rest_time: Some(motion.rest_time().map(|rest| rest * self.units.time())),
             integrated: true,
         })
     }

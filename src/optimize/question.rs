@@ -257,11 +257,11 @@ impl Question {
                 .any(Objective::is_of_contact)
     }
 
-    /// Whether the rest of the pendulum counts.
-    pub(super) fn needs_pendulum_rest(&self) -> bool {
+    /// Whether the rest of the pendulum counts, or what happens until then.
+    pub(super) fn follows_pendulum(&self) -> bool {
         let limited = self.limits.iter().map(|limit| limit.objective);
         let mut counting = self.objectives.iter().copied().chain(limited);
-        counting.any(Objective::is_rest_time)
+        counting.any(|objective| objective.is_rest_time() || objective == Objective::Impacts)
     }
 
     /// The reason for which a design has no value of an objective; `None` where it has all of them.

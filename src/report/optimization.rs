@@ -118,13 +118,17 @@ fn asked(study: &Study) -> Vec<Block<'_>> {
     if let Some(of) = question.main_mass {
         let hangs = question.case.start == Some(0.0) && question.case.speed == 0.0;
         blocks.push(Block::Note(format!(
-            "main mass of {} kg on {} N/m and {} N s/m, let go from {} m at {} m/s{}; contacts are counted until it rests",
+            "main mass of {} kg on {} N/m and {} N s/m, let go from {} m at {} m/s{}",
             decimal(of.mass),
             decimal(of.stiffness),
             decimal(of.damping),
             decimal(of.displacement),
             decimal(of.speed),
-            if hangs { " with the pendulum hanging at rest" } else { "" }
+            if hangs {
+                " with the pendulum hanging at rest"
+            } else {
+                ""
+            }
         )));
     }
     for constraint in question.constraints() {

@@ -63,7 +63,8 @@ fn found_better(study: &Study, decision: &Decision) -> Option<(String, f64)> {
     let rivals = rivals.filter_map(|rival| Some((rival.name.to_owned(), -apart(rival.spread()?.best, own)?)));
     let alone = apart(decision.least, decision.value).map(|apart| ("a look around it".to_owned(), -apart));
     let best = rivals.chain(alone).max_by(|one, other| one.1.total_cmp(&other.1));
-    best.filter(|(_, better)| *better > BETTER)
+    // What closed forms are off decides nothing.
+    best.filter(|(_, better)| *better > BETTER.max(closed_forms_off(study)))
 }
 
 fn what_decides(study: &Study) -> Vec<String> {
@@ -116,11 +117,21 @@ fn what_decides(study: &Study) -> Vec<String> {
     if !flat.is_empty() {
         sentences.push(flat_directions(&flat, objective));
     }
-    let trade = of(Role::Trade);
+    let is_worse_everywhere = |sensitivity: &&Sensitivity| {
+        let least = sensitivity.range.map_or(f64::INFINITY, |[least, _]| least);
+        least >= decision.value * (1.0 - BETTER)
+    };
+    let (trade, elsewhere): (Vec<_>, Vec<_>) = of(Role::Trade).into_iter().partition(is_worse_everywhere);
     if !trade.is_empty() {
         sentences.push(format!(
             "A trade: {} between the limits, {objective} is worse on either side.",
             names(&trade)
+        ));
+    }
+    if !elsewhere.is_empty() {
+        sentences.push(format!(
+            "Nearby {objective} is worse on either side of {}, and further away, constraints aside, it is less.",
+            names(&elsewhere)
         ));
     }
     // Whether anything that the constraint forbids is better.

@@ -367,7 +367,13 @@ fn an_event_may_count_in_one_direction() {
     // x = t^2/2 - 1e-17 t: it dips below zero for 2e-17.
     let onset = system(&["x"], &["t - e"], &[("e", 1e-17)]).unwrap();
     let path = onset
-        .solve(0.0, &[0.0], 1.0, &[Event::stop(expression("x")).falling()], &Options::default())
+        .solve(
+            0.0,
+            &[0.0],
+            1.0,
+            &[Event::stop(expression("x")).falling()],
+            &Options::default(),
+        )
         .expect("a path");
     assert_eq!(path.reason(), End::Reached);
 }

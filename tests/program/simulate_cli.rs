@@ -702,7 +702,13 @@ fn a_sweep_of_many_parameters_names_every_column_and_its_unit() {
 #[test]
 fn a_main_mass_is_swept_over_any_of_its_numbers() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/primary/stick-slip.toml");
-    let axes = [file, "--sweep", "barrier=0.1:0.2:2", "--sweep", "displacement=0.01,0.02"];
+    let axes = [
+        file,
+        "--sweep",
+        "barrier=0.1:0.2:2",
+        "--sweep",
+        "displacement=0.01,0.02",
+    ];
     let document = json(&axes);
     let swept = document["rows"].as_array().expect("rows");
     let values: Vec<&Value> = swept.iter().map(|row| &row["values"]).collect();
@@ -714,12 +720,18 @@ fn a_main_mass_is_swept_over_any_of_its_numbers() {
     let alone = json(&[file]);
     assert_eq!(swept[3]["rest_time"], alone["rest_time"]);
     assert_eq!(swept[3]["rest_locked"], alone["locked"]["rest_time"]);
-    assert_eq!(swept[3]["all_impacts"], json!(alone["impacts"].as_array().expect("impacts").len()));
+    assert_eq!(
+        swept[3]["all_impacts"],
+        json!(alone["impacts"].as_array().expect("impacts").len())
+    );
     let table = output(&[&axes[..], &["--format", "csv"]].concat());
     assert!(table.starts_with("# units: barrier rad, displacement m, "), "{table}");
     assert_eq!(table.lines().count(), 6);
     let text = output(&axes);
-    assert!(text.contains("come to rest") && text.contains("barrier: the place"), "{text}");
+    assert!(
+        text.contains("come to rest") && text.contains("barrier: the place"),
+        "{text}"
+    );
     for (sweep, said) in [
         ("gap=1:2:2", "choose one of primary.mass, mass_ratio, stiffness, "),
         ("damping=1:2:2", "write primary.damping or contact.damping"),

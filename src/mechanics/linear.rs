@@ -7,7 +7,7 @@ use crate::expr::{Expr, ExprError};
 ///
 /// # Errors
 /// A pivot that vanishes: the caller's error.
-pub(super) fn solution(
+pub(crate) fn solution(
     matrix: &[Vec<Expr>],
     right: &[Expr],
     singular: impl Fn() -> MechanicsError,

@@ -7,8 +7,8 @@
 //! (H. Goldstein, *Classical Mechanics*, 2nd ed., section 2-6, for h; of an equation it is `x'^2/2 + V(x)`.) In: coordinates, their accelerations, numbers for every
 //! parameter, a start, a duration. Out: a [`Trajectory`]: every state at any time, the balance of energy where a mechanism has
 //! energies, and the same by the other integrator to judge it. Power series go first; where they end, as at a root or a touch that
-//! is no power series in time, Runge-Kutta takes the whole motion. Where dry friction, `sgn(x')` or `sgn(x' - c)` on a belt, holds the only
-//! coordinate there is, it stays until the force on it is more than friction bears.
+//! is no power series in time, Runge-Kutta takes the whole motion. Where dry friction, `sgn(x')`, `sgn(x' - c)` on a belt or
+//! `sgn(x' - y')` between two bodies, holds something, it stays until the force on it is more than friction bears.
 
 mod energy;
 mod hold;
@@ -27,13 +27,13 @@ use crate::interrupt::Interrupt;
 use crate::mechanics::{Equations, MechanicsError, Mechanism, Rates};
 use crate::oscillator::Oscillator;
 use crate::symbol::{Symbol, fresh};
-use crate::system::{End, Event, Integrator, Options, Path, System, SystemError};
+use crate::system::{End, Integrator, Options, Path, System, SystemError};
 
 pub use section::{Crossing, MOST_CROSSINGS, Section};
 pub use sensitivity::DISPLACEMENT;
 pub use sweep::{SweptMotion, sweep};
 
-use hold::Hold;
+use hold::{Layout, StateEquations};
 use root::roots_across_corners;
 use section::OnSection;
 
@@ -354,14 +354,13 @@ impl Course {
             step_limit: self.step_limit,
             interrupt: self.interrupt,
         };
-        let moving = Rates {
-            states: self.rates.states.clone(),
-            right: right[..self.rates.states.len()].to_vec(),
+        let equations = StateEquations {
+            states: &states,
+            right: &right,
+            values: &values,
+            critical: &critical,
         };
-        let events = self.section.as_ref();
-        let events = events.map_or(vec![], |section| section.events(&moving));
-        let equations = (&system, right.as_slice(), &values, critical.as_slice());
-        let (pieces, reason) = self.pieces(equations, start, &events, &options)?;
+        let (pieces, reason) = self.pieces(&system, &equations, start, &options)?;
         let mut motion = Trajectory {
             course: self,
             integrator,
@@ -374,72 +373,37 @@ impl Course {
         motion.on_section = motion.find_on_section()?;
         Ok(motion)
     }
-
-    /// The motion piece by piece, each as the equations say or held by friction, and why it ends. The equations are a system with their
-    /// right sides, those of the works behind those of the states, their numbers and the times that no step crosses.
-    fn pieces(
-        &self,
-        (system, right, values, critical): (&System, &[Expr], &BTreeMap<Symbol, f64>, &[f64]),
-        start: Vec<f64>,
-        events: &[Event],
-        options: &Options,
-    ) -> Result<(Vec<Piece>, End), TrajectoryError> {
-        let mut pieces = Vec::new();
-        let (mut from, mut state) = (0.0, start);
-        let reason = loop {
-            let path = system.solve(from, &state, self.duration, events, options)?;
-            let (end, reason) = (path.end(), path.reason());
-            let last = path.at(end);
-            pieces.push(Piece::Moving(path));
-            let (End::Sticks, Some(last)) = (reason, last) else {
-                break reason;
-            };
-            let held = self.held(end, &last, (right, values), critical, options)?;
-            let Some(hold) = held else { break reason };
-            let until = hold.until;
-            state = hold.at(until);
-            pieces.push(Piece::Held(hold));
-            // A hold without length, or too many of them, lead nowhere.
-            if until >= self.duration || until <= end || pieces.len() > MOST_PIECES {
-                break if until >= self.duration {
-                    End::Reached
-                } else {
-                    End::Sticks
-                };
-            }
-            from = until;
-        };
-        Ok((pieces, reason))
-    }
 }
 
-/// What a motion is made of.
+/// A stretch of a motion: as the equations say, or with something held by dry friction.
 #[derive(Clone, Debug)]
-enum Piece {
-    /// As the equations say.
-    Moving(Path),
-    /// Where dry friction holds it.
-    Held(Hold),
+struct Piece {
+    from: f64,
+    path: Path,
+    /// How all states are read from those of the path, where something is held; nothing where the path has all states.
+    layout: Option<Layout>,
+    /// The number of events of the path that are those of the section; they come first.
+    recorded: usize,
 }
 
 impl Piece {
     fn end(&self) -> f64 {
-        match self {
-            Self::Moving(path) => path.end(),
-            Self::Held(hold) => hold.until,
-        }
+        self.path.end()
     }
 
     fn at(&self, time: f64) -> Option<Vec<f64>> {
-        match self {
-            Self::Moving(path) => path.at(time),
-            Self::Held(hold) => Some(hold.at(time)),
-        }
+        let states = self.path.at(time)?;
+        Some(match &self.layout {
+            None => states,
+            Some(layout) => layout.states(time, &states),
+        })
+    }
+
+    /// Whether something is held.
+    fn is_held(&self) -> bool {
+        self.layout.is_some()
     }
 }
-
-/// So often may a motion be held.
-const MOST_PIECES: usize = 20_000;
 
 impl Trajectory {
     /// The account of the energy.
@@ -488,12 +452,17 @@ impl Trajectory {
         self.pieces.get(place)?.at(time)
     }
 
-    /// Where dry friction holds it, at rest or on a belt: from when until when.
+    /// The stretches of time, from when until when, on which dry friction holds something: at rest, on a belt or on another body.
     pub fn held(&self) -> impl Iterator<Item = [f64; 2]> {
-        self.pieces.iter().filter_map(|piece| match piece {
-            Piece::Held(hold) => Some([hold.from, hold.until]),
-            Piece::Moving(_) => None,
-        })
+        let mut held: Vec<[f64; 2]> = Vec::new();
+        for piece in self.pieces.iter().filter(|piece| piece.is_held()) {
+            match held.last_mut() {
+                // Something else is held from there on.
+                Some([_, until]) if *until == piece.from => *until = piece.end(),
+                _ => held.push([piece.from, piece.end()]),
+            }
+        }
+        held.into_iter()
     }
 
     /// The time at which it ends.

@@ -8,7 +8,7 @@ use crate::symbol::Symbol;
 ///
 /// # Errors
 /// A pivot that vanishes: the caller's error.
-pub(super) fn solution(
+pub(crate) fn solution(
     matrix: &[Vec<Expr>],
     right: &[Expr],
     singular: impl Fn() -> MechanicsError,

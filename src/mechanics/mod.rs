@@ -23,7 +23,7 @@ pub mod dimension;
 mod equilibrium;
 mod groups;
 mod lagrange;
-mod linear;
+pub(crate) mod linear;
 mod modes;
 pub mod paper;
 mod rates;

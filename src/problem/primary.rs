@@ -140,7 +140,7 @@ impl Problem {
             case.set(parameter, value);
         }
         let (model, Start { x, velocity }) = case.motion().map_err(SimulateError::from)?;
-        let units = self.simulation_units(&case.design).unwrap_or(in_si(&case.design));
+        let units = in_si(&case.design);
         let main_mass = self.primary.unwrap_or_default().with(varied, &units)?.main_mass()?;
         let primary = main_mass.primary(&units);
         let [displacement, speed] = main_mass.start(&units);
@@ -177,7 +177,7 @@ impl Problem {
     }
 }
 
-/// The units of a design alone, where gamma is given beside it.
+/// The units of a design.
 fn in_si(design: &Design) -> Units {
     Units {
         mass: design.mass,

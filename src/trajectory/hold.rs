@@ -1,219 +1,577 @@
-//! Where dry friction holds the only coordinate that there is: at rest, or on a belt that runs.
+//! Dry friction that holds something: a coordinate at rest, a block on a belt that runs, two bodies that stick to each other.
 //!
 //! ```text
-//! x'' = a(x, v, t; s),   s = sgn(v - c):    held while  a(s = 1) <= 0 <= a(s = -1),    x = x_0 + c (t - t_0)
-//! the friction that holds:  a(s) = 0,   s = (a+ + a-)/(a- - a+),   -1 < s < 1
+//! y' = f(y, t; s_1, s_2, ...),  s_i = sgn(u_i),  u_i linear in the velocities
+//! held on u_i = 0:    du_i/dt(s) = 0 for every i that is held,  |s_i| <= 1          the s are linear equations away
+//! released:           |s_i| grows through 1; from there on s_i is its sign, until u_i returns to zero
 //! ```
 //!
-//! (A. F. Filippov, *Differential Equations with Discontinuous Righthand Sides*, Kluwer 1988, chapter 2.) Corners of the force with the
-//! velocity alone, `sgn(x' - c)` and `H(x' - c)`, can hold it; elsewhere a motion that stays on its corner is not followed.
+//! (A. F. Filippov, *Differential Equations with Discontinuous Righthand Sides*, Kluwer 1988, chapter 2; several at a time: F. Pfeiffer,
+//! C. Glocker, *Multibody Dynamics with Unilateral Contacts*, Wiley 1996.) `H(u)` is `(1 + sgn(u))/2`. While u_i = 0 holds, one velocity
+//! is what the equation says of it and is not followed.
+//!
+//! At the onset of a slip u_i and its rate are both zero, so that rounding decides in which direction u_i leaves its zero. Therefore only
+//! crossings in one direction end a stretch, and each such event has a second one at a level that rounding does not reach.
 
 use std::collections::BTreeMap;
 
-use super::{Course, TrajectoryError};
-use crate::exact::from_f64;
-use crate::expr::{Expr, ExprError, Function, Node};
-use crate::symbol::{Symbol, fresh};
-use crate::system::{End, Event, Options, Path, System};
+use super::{Course, Piece, Section, TrajectoryError};
+use crate::exact::{from_f64, ratio};
+use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
+use crate::mechanics::{Rates, linear};
+use crate::symbol::{Symbol, fresh_stem};
+use crate::system::{End, Event, Options, System};
 
-/// A stretch of a motion that friction holds.
-#[derive(Clone, Debug)]
-pub(super) struct Hold {
-    /// Coordinate, velocity and works where it begins.
-    state: Vec<f64>,
-    pub(super) from: f64,
-    pub(super) until: f64,
-    /// Position and works on a belt that runs; nothing at rest.
-    path: Option<Path>,
-}
-
-/// How much longer a hold lasts than it must, over the duration: at its very end nothing pulls yet, and it would be held again. The motion
-/// grows with the cube of the time, so that a delay d leaves an error of d^2.
-const DELAY: f64 = 1e-9;
-
-/// A speed that rounding leaves of the one that holds.
+/// A speed that rounding leaves of one that is zero, beside speeds and places of one.
 const AT_REST: f64 = 1e-9;
 
-/// What rounding and the steps leave of a pull, in parts of the jump of the friction.
+/// The force that rounding and the steps leave of zero, in parts of the friction.
 const ROUNDING: f64 = 1e-9;
 
-impl Hold {
-    /// Coordinate, velocity and works at a time.
-    pub(super) fn at(&self, time: f64) -> Vec<f64> {
-        let mut state = self.state.clone();
-        let Some(path) = &self.path else { return state };
-        // Behind the last force that holds it is carried on for next to no time.
-        let late = (time - path.end()).max(0.0);
-        let (last, before) = (path.at(time - late), path.at(time - 2.0 * late));
-        let carried = match (last, before) {
-            (Some(last), Some(before)) if late > 0.0 => last
-                .iter()
-                .zip(&before)
-                .map(|(last, before)| 2.0 * last - before)
-                .collect(),
-            (Some(last), _) => last,
-            (None, _) => return state,
-        };
-        if let Some((position, works)) = carried.split_first() {
-            state[0] = *position;
-            state[2..].copy_from_slice(works);
-        }
-        state
-    }
+/// The speed that they leave of zero at the onset of a slip, in parts of the change that friction makes in a unit of time.
+const UNSEEN: f64 = 1e-12;
+
+/// A force that exceeds the friction by so large a part of it leads away from rest at once.
+const CLEARLY: f64 = 1e-3;
+
+/// So often may something be held.
+const MOST_HOLDS: usize = 10_000;
+
+/// So many stretches without length in a row lead nowhere.
+const IDLE: usize = 8;
+
+/// First-order equations in numbers.
+pub(super) struct StateEquations<'a> {
+    /// Coordinates, velocities and works.
+    pub(super) states: &'a [Symbol],
+    /// The rate of each.
+    pub(super) right: &'a [Expr],
+    /// The value of every other symbol but the time.
+    pub(super) values: &'a BTreeMap<Symbol, f64>,
+    /// Times that no step crosses.
+    pub(super) critical: &'a [f64],
 }
 
-/// A jump of the accelerations with the velocity.
-struct Jump {
-    /// The velocity at which it is.
-    speed: f64,
-    /// As they are above and below, at that velocity.
-    sides: [Vec<Expr>; 2],
+/// A surface u = 0 on which the rates jump.
+#[derive(Clone, Debug)]
+struct Surface {
+    u: Expr,
+    /// Every argument of a `sgn`, `H` or `abs` that is zero where u is, and whether it has the sign of u.
+    arguments: Vec<(Expr, bool)>,
+    /// Half of the jump of du/dt.
+    strength: f64,
+}
+
+/// How a surface counts on a stretch of the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Regime {
+    /// As the equations are typed: a corner of theirs.
+    Typed,
+    /// The motion stays on it.
+    Held,
+    /// The motion has left it to this side, 1 or -1, and has not come back yet.
+    Left(i64),
+}
+
+/// The surfaces that a motion was on where a stretch of it begins.
+type Regimes = Vec<(Surface, Regime)>;
+
+/// How all states are read from those that are followed.
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    /// For each state its place among those that are followed, or its value in terms of them.
+    states: Vec<Result<usize, CompiledFunction>>,
+    /// The values of the letters in these.
+    numbers: Vec<f64>,
+}
+
+impl Layout {
+    /// All states at a time.
+    pub(super) fn states(&self, time: f64, followed: &[f64]) -> Vec<f64> {
+        let arguments: Vec<f64> = followed
+            .iter()
+            .copied()
+            .chain([time])
+            .chain(self.numbers.iter().copied())
+            .collect();
+        let state = |state: &Result<usize, CompiledFunction>| match state {
+            Ok(place) => followed[*place],
+            Err(value) => value.call(&arguments),
+        };
+        self.states.iter().map(state).collect()
+    }
 }
 
 impl Course {
-    /// How dry friction holds the only coordinate that there is, from a time on, and until when: until the acceleration on one side of
-    /// the jump leads away from it. Nothing where it is not held. `right` are the rates of the states and of the works.
-    pub(super) fn held(
+    /// The motion stretch by stretch, each as the equations say or with something held by friction, and why it ends.
+    pub(super) fn pieces(
         &self,
-        from: f64,
-        state: &[f64],
-        (right, values): (&[Expr], &BTreeMap<Symbol, f64>),
-        critical: &[f64],
+        system: &System,
+        equations: &StateEquations,
+        start: Vec<f64>,
         options: &Options,
-    ) -> Result<Option<Hold>, TrajectoryError> {
-        let ([place, velocity], [x, speed, ..]) = (self.rates.states.as_slice(), state) else {
+    ) -> Result<(Vec<Piece>, End), TrajectoryError> {
+        let moving = Rates {
+            states: equations.states.to_vec(),
+            right: equations.right.to_vec(),
+        };
+        let events = self.section.as_ref();
+        let events = events.map_or(vec![], |section| section.events(&moving));
+        let (mut pieces, mut regimes) = (Vec::new(), Regimes::new());
+        let (mut from, mut state) = (0.0, start);
+        let (mut idle, mut holds) = (0, 0);
+        let reason = loop {
+            let piece = match regimes.iter().all(|(_, regime)| *regime == Regime::Typed) {
+                true => Piece {
+                    recorded: events.len(),
+                    layout: None,
+                    from,
+                    path: system.solve(from, &state, self.duration, &events, options)?,
+                },
+                false => match self.stretch(equations, &regimes, from, &mut state, options)? {
+                    Some(piece) => piece,
+                    None => break End::Sticks,
+                },
+            };
+            let (end, reason) = (piece.end(), piece.path.reason());
+            let (last, recorded) = (piece.at(end), piece.recorded);
+            holds += usize::from(piece.is_held());
+            pieces.push(piece);
+            let Some(last) = last else { break reason };
+            state = last;
+            let released = match reason {
+                End::Event(event) => released(&mut regimes, event.saturating_sub(recorded)),
+                End::Sticks => false,
+                reason => break reason,
+            };
+            if !released {
+                regimes = match surfaces(equations, end, &state)? {
+                    found if found.is_empty() => break End::Sticks,
+                    found => match regimes_at(equations, found, end, &state)? {
+                        Some(regimes) => regimes,
+                        None => break End::Sticks,
+                    },
+                };
+            }
+            idle = if end > from { 0 } else { idle + 1 };
+            if idle > IDLE || holds > MOST_HOLDS {
+                break End::Sticks;
+            }
+            from = end;
+        };
+        Ok((pieces, reason))
+    }
+
+    /// The motion from a time on, until something that is held is released or something that was left is back. The states that are held
+    /// are set to what is held. Nothing where there are no such equations.
+    fn stretch(
+        &self,
+        equations: &StateEquations,
+        regimes: &Regimes,
+        from: f64,
+        state: &mut [f64],
+        options: &Options,
+    ) -> Result<Option<Piece>, TrajectoryError> {
+        let Some(sliding) = sliding(equations, regimes, &numbers_at(equations, from, state))? else {
             return Ok(None);
         };
-        let Some(jump) = jump_at(right, [*place, *velocity], (*x, *speed), values)? else {
+        let followed: Vec<usize> = (0..state.len())
+            .filter(|index| !sliding.fixed.contains_key(&equations.states[*index]))
+            .collect();
+        let names: Vec<Symbol> = followed.iter().map(|index| equations.states[*index]).collect();
+        let right: Vec<Expr> = followed.iter().map(|index| sliding.right[*index].clone()).collect();
+        let arguments: Vec<Symbol> = names
+            .iter()
+            .chain([&Symbol::new("t")])
+            .chain(equations.values.keys())
+            .copied()
+            .collect();
+        let of_state = |(index, name): (usize, &Symbol)| match sliding.fixed.get(name) {
+            None => Ok(Ok(followed.partition_point(|place| *place < index))),
+            Some(value) => CompiledFunction::new(value, &arguments).map(Err),
+        };
+        let states: Result<Vec<_>, _> = equations.states.iter().enumerate().map(of_state).collect();
+        let Ok(states) = states else { return Ok(None) };
+        let layout = Layout {
+            states,
+            numbers: equations.values.values().copied().collect(),
+        };
+        let start: Vec<f64> = followed.iter().map(|index| state[*index]).collect();
+        state.copy_from_slice(&layout.states(from, &start));
+        let rates = Rates {
+            states: names.clone(),
+            right: right.clone(),
+        };
+        let section = self
+            .section
+            .as_ref()
+            .map(|section| section.on(&sliding.fixed))
+            .transpose()?;
+        let mut events = section.map_or(vec![], |section| section.events(&rates));
+        let recorded = events.len();
+        events.extend(sliding.events);
+        let Ok(system) = System::new(&names, Symbol::new("t"), &right, equations.values) else {
             return Ok(None);
         };
-        let [forward, backward] = jump.sides.each_ref().map(|side| &side[1]);
-        let mut numbers = values.clone();
-        numbers.insert(*velocity, jump.speed);
-        let at = |expression: &Expr| {
-            let mut numbers = numbers.clone();
-            numbers.extend([(*place, *x), (Symbol::new("t"), from)]);
-            expression.evaluate(&numbers)
-        };
-        let (Ok(above), Ok(below)) = (at(forward), at(backward)) else {
-            return Ok(None);
-        };
-        // At rest nothing changes any more where time does not occur: what rounding leaves at the edge of the held places is no pull.
-        let at_edge = jump.speed == 0.0 && ![forward, backward].iter().any(|side| side.contains(Symbol::new("t")));
-        let slack = if at_edge { ROUNDING * (below - above).abs() } else { 0.0 };
-        if !(above <= slack && below >= -slack) {
-            return Ok(None);
-        }
-        let mut hold = Hold {
-            state: state.to_vec(),
+        let system = system.with_critical_times(equations.critical);
+        let path = system.solve(from, &start, self.duration, &events, options);
+        Ok(path.ok().map(|path| Piece {
+            recorded,
+            layout: sliding.held.then_some(layout),
             from,
-            until: from,
-            path: None,
-        };
-        hold.state[1] = jump.speed;
-        if from >= self.duration {
-            return Ok(Some(hold));
-        }
-        let events = [Event::stop(forward.clone()), Event::stop(backward.clone())];
-        let carried = jump.speed != 0.0;
-        let (states, rates, start) = match carried {
-            // Power is needed where it moves only.
-            true => {
-                let works: Vec<Symbol> = works(&numbers, state.len() - 2);
-                let states: Vec<Symbol> = [*place].into_iter().chain(works).collect();
-                let start: Vec<f64> = [*x].into_iter().chain(state[2..].iter().copied()).collect();
-                (states, carried_rates(&jump)?, start)
-            }
-            false => {
-                numbers.insert(*place, *x);
-                let nothing = fresh("nothing", &numbers.keys().copied().collect::<Vec<_>>());
-                (vec![nothing], vec![Expr::zero()], vec![0.0])
-            }
-        };
-        let clock = System::new(&states, Symbol::new("t"), &rates, &numbers)?.with_critical_times(critical);
-        let path = clock.solve(from, &start, self.duration, &events, options)?;
-        if !matches!(path.reason(), End::Reached | End::Event(_)) {
-            return Ok(None);
-        }
-        hold.until = (path.end() + DELAY * self.duration).min(self.duration);
-        hold.path = carried.then_some(path);
-        Ok(Some(hold))
+            path,
+        }))
     }
 }
 
-fn works(numbers: &BTreeMap<Symbol, f64>, count: usize) -> Vec<Symbol> {
-    let mut taken: Vec<Symbol> = numbers.keys().copied().collect();
-    (0..count)
-        .map(|_| {
-            let work = fresh("work", &taken);
-            taken.push(work);
-            work
+impl Section {
+    /// This section with these expressions in place of some states.
+    fn on(&self, fixed: &BTreeMap<Symbol, Expr>) -> Result<Self, ExprError> {
+        Ok(match self {
+            Self::Every(period) => Self::Every(period.clone()),
+            Self::Rising(expression) => Self::Rising(expression.substitute_all(fixed)?),
         })
-        .collect()
+    }
 }
 
-/// The rates of position and works while friction holds: each as it is on either side, by the share at which the acceleration is zero.
-fn carried_rates(jump: &Jump) -> Result<Vec<Expr>, ExprError> {
-    let [above, below] = &jump.sides;
-    let share = Expr::divide(&below[1], &(&below[1] - &above[1]))?;
-    let mixed = |(one, other): (&Expr, &Expr)| other + &(&share * &(one - other));
-    let works = above.iter().zip(below).skip(2).map(mixed);
-    Ok([above[0].clone()].into_iter().chain(works).collect())
+/// The events that each surface of a stretch has, in their order.
+const EVENTS: usize = 4;
+
+/// Lets go of what an event of a stretch says is released; `false` where it says that something is back on its surface.
+fn released(regimes: &mut Regimes, event: usize) -> bool {
+    match regimes.get_mut(event / EVENTS) {
+        Some((_, regime)) if *regime == Regime::Held => {
+            *regime = Regime::Left(if event.is_multiple_of(2) { 1 } else { -1 });
+            true
+        }
+        _ => false,
+    }
 }
 
-/// The jump of the rates with the velocity where this one is, if there is one.
-fn jump_at(
-    right: &[Expr],
-    [place, velocity]: [Symbol; 2],
-    (x, speed): (f64, f64),
-    values: &BTreeMap<Symbol, f64>,
-) -> Result<Option<Jump>, ExprError> {
-    let own = [place, Symbol::new("t")];
-    // The velocity at which an argument is zero, and whether it grows with the velocity.
-    let own_speed = |argument: &Expr| -> Option<(f64, bool)> {
-        let factor = argument.differentiate(velocity).ok()?;
-        let rest = argument.substitute(velocity, &Expr::zero()).ok()?;
-        let steady = |expr: &Expr| !own.iter().chain([&velocity]).any(|name| expr.contains(*name));
-        if !steady(&factor) || !steady(&rest) {
+/// The values of all symbols.
+fn numbers_at(equations: &StateEquations, time: f64, state: &[f64]) -> BTreeMap<Symbol, f64> {
+    let mut numbers = equations.values.clone();
+    numbers.insert(Symbol::new("t"), time);
+    numbers.extend(equations.states.iter().copied().zip(state.iter().copied()));
+    numbers
+}
+
+/// The velocities among the states: those whose name is that of another state with a prime.
+fn velocities<'a>(equations: &StateEquations<'a>) -> impl Iterator<Item = Symbol> + use<'a> {
+    let states = equations.states;
+    let is_velocity = move |name: &&Symbol| states.iter().any(|state| state.derivative() == **name);
+    states.iter().filter(is_velocity).copied()
+}
+
+/// A velocity that an expression is linear in, the one that it depends on most here, and its coefficient; nothing where the expression is
+/// not linear in the velocities, or contains none.
+fn leading_velocity(
+    expression: &Expr,
+    equations: &StateEquations,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Option<(Symbol, Expr)> {
+    let mut leading: Option<(f64, Symbol, Expr)> = None;
+    for velocity in velocities(equations).filter(|velocity| expression.contains(*velocity)) {
+        let coefficient = expression.differentiate(velocity).ok()?;
+        if velocities(equations).any(|velocity| coefficient.contains(velocity)) {
             return None;
         }
-        let (factor, rest) = (factor.evaluate(values).ok()?, rest.evaluate(values).ok()?);
-        let zero = if rest == 0.0 { 0.0 } else { -rest / factor };
-        (factor != 0.0 && zero.is_finite()).then_some((zero, factor > 0.0))
+        let size = coefficient.evaluate(numbers).ok()?.abs();
+        if size > 0.0 && leading.as_ref().is_none_or(|(largest, ..)| size > *largest) {
+            leading = Some((size, velocity, coefficient));
+        }
+    }
+    leading.map(|(_, velocity, coefficient)| (velocity, coefficient))
+}
+
+/// Solves u = 0 for its leading velocity.
+fn solved(
+    u: &Expr,
+    equations: &StateEquations,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<Option<(Symbol, Expr)>, ExprError> {
+    let Some((velocity, coefficient)) = leading_velocity(u, equations, numbers) else {
+        return Ok(None);
     };
-    let near = |zero: f64| (zero - speed).abs() <= AT_REST * (1.0 + x.abs() + zero.abs());
-    let argument_of = |part: &Expr| match part.node() {
-        Node::Function(Function::Sign | Function::Step, arguments) => arguments.first().cloned(),
+    let rest = u.substitute(velocity, &Expr::zero())?;
+    Ok(Some((velocity, -Expr::divide(&rest, &coefficient)?)))
+}
+
+/// The surfaces that a state is on, to rounding, and on which the rates jump.
+fn surfaces(equations: &StateEquations, time: f64, state: &[f64]) -> Result<Vec<Surface>, ExprError> {
+    let numbers = numbers_at(equations, time, state);
+    let size = 1.0 + state.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let corner = |part: &Expr| match part.node() {
+        Node::Function(function @ (Function::Sign | Function::Step | Function::Absolute), arguments) => {
+            Some((*function != Function::Absolute, arguments.first()?.clone()))
+        }
         _ => None,
     };
-    let arguments = right[1].unique_nodes().filter_map(argument_of);
-    let mut speeds = arguments.filter_map(|argument| own_speed(&argument));
-    let Some((zero, _)) = speeds.find(|(zero, _)| near(*zero)) else {
-        return Ok(None);
-    };
-    let Some(number) = from_f64(zero).map(Expr::number) else {
-        return Ok(None);
-    };
-    let on_side = |expression: &Expr, side: i64| -> Result<Expr, ExprError> {
-        let chosen = expression.fold(|expr, children: &[Expr]| match expr.node() {
-            Node::Function(function @ (Function::Sign | Function::Step), arguments) => {
-                match arguments.first().and_then(own_speed).filter(|(zero, _)| near(*zero)) {
-                    Some((_, grows)) => Expr::function(*function, vec![Expr::from(if grows { side } else { -side })]),
-                    None => expr.with_children(children),
-                }
+    let mut corners: Vec<(bool, Expr)> = Vec::new();
+    for found in equations
+        .right
+        .iter()
+        .flat_map(|right| right.unique_nodes().filter_map(corner))
+    {
+        if !corners.contains(&found) {
+            corners.push(found);
+        }
+    }
+    // Those that jump come first, for they are the surfaces.
+    corners.sort_by_key(|(jumps, _)| !jumps);
+    let mut found: Vec<Surface> = Vec::new();
+    for (jumps, argument) in corners {
+        let Some((velocity, coefficient)) = leading_velocity(&argument, equations, &numbers) else {
+            continue;
+        };
+        let (Ok(value), Ok(slope)) = (argument.evaluate(&numbers), coefficient.evaluate(&numbers)) else {
+            continue;
+        };
+        if value.is_nan() || value.abs() > AT_REST * size * slope.abs() {
+            continue;
+        }
+        let known = found.iter_mut().find_map(|surface| {
+            let ratio = argument.differentiate(velocity).ok()?.evaluate(&numbers).ok()?
+                / surface.u.differentiate(velocity).ok()?.evaluate(&numbers).ok()?;
+            let factor = Expr::number(from_f64(ratio)?);
+            let apart = (&argument - &(&factor * &surface.u)).expand().ok()?;
+            let states = equations
+                .states
+                .iter()
+                .chain([&Symbol::new("t")])
+                .any(|state| apart.contains(*state));
+            let same = !states && apart.evaluate(&numbers).ok()?.abs() <= AT_REST * slope.abs();
+            same.then_some((surface, ratio > 0.0))
+        });
+        match known {
+            Some((surface, sign)) => surface.arguments.push((argument, sign)),
+            None if jumps => found.push(Surface {
+                u: argument.clone(),
+                arguments: vec![(argument, true)],
+                strength: 0.0,
+            }),
+            None => {}
+        }
+    }
+    Ok(found)
+}
+
+/// How each of these surfaces, on which a state is, counts from there on: held where the friction that this needs is within its bound.
+/// Nothing where that cannot be told.
+fn regimes_at(
+    equations: &StateEquations,
+    found: Vec<Surface>,
+    time: f64,
+    state: &[f64],
+) -> Result<Option<Regimes>, ExprError> {
+    let mut numbers = numbers_at(equations, time, state);
+    let mut regimes = Regimes::new();
+    for mut surface in found {
+        let alone = vec![(surface.clone(), Regime::Held)];
+        let jump = sliding(equations, &alone, &numbers)?.and_then(|own| own.jumps.first()?.evaluate(&numbers).ok());
+        // Rates that lead away on both sides, or do not jump, hold nothing.
+        if let Some(jump) = jump.filter(|jump| *jump < 0.0) {
+            surface.strength = -jump;
+            regimes.push((surface, Regime::Held));
+        }
+    }
+    let mut excess = f64::INFINITY;
+    loop {
+        let Some(sliding) = sliding(equations, &regimes, &numbers)? else {
+            return Ok(None);
+        };
+        for (name, value) in &sliding.fixed {
+            let Ok(value) = value.evaluate(&numbers) else {
+                return Ok(None);
+            };
+            numbers.insert(*name, value);
+        }
+        let mut worst: Option<(usize, f64)> = None;
+        for (index, share) in &sliding.shares {
+            let Ok(share) = share.evaluate(&numbers) else {
+                return Ok(None);
+            };
+            if share.is_nan() {
+                return Ok(None);
             }
-            _ => expr.with_children(children),
-        })?;
-        chosen.substitute(velocity, &number)
+            if share.abs() > 1.0 + ROUNDING && worst.is_none_or(|(_, largest)| share.abs() > largest.abs()) {
+                worst = Some((*index, share));
+            }
+        }
+        if let Some((index, share)) = worst {
+            regimes[index].1 = Regime::Left(if share > 0.0 { 1 } else { -1 });
+            excess = excess.min(share.abs() - 1.0);
+            continue;
+        }
+        if sliding.shares.is_empty() && excess > CLEARLY {
+            // The corner itself says where the motion goes.
+            regimes.iter_mut().for_each(|(_, regime)| *regime = Regime::Typed);
+        }
+        return Ok(Some(regimes));
+    }
+}
+
+/// The equations on a stretch where something is held or has been left.
+struct Sliding {
+    /// The rates of all states.
+    right: Vec<Expr>,
+    /// The velocities that are held, in terms of the other states.
+    fixed: BTreeMap<Symbol, Expr>,
+    /// The friction that each surface needs, in parts of its bound, by the number of the surface.
+    shares: Vec<(usize, Expr)>,
+    /// Half of the jump of du/dt on each of these.
+    jumps: Vec<Expr>,
+    /// The events that end the stretch: [`EVENTS`] for each surface.
+    events: Vec<Event>,
+    /// Whether anything is held.
+    held: bool,
+}
+
+fn sliding(
+    equations: &StateEquations,
+    regimes: &Regimes,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<Option<Sliding>, ExprError> {
+    let taken: Vec<Symbol> = equations
+        .states
+        .iter()
+        .chain(equations.values.keys())
+        .copied()
+        .collect();
+    let stem = fresh_stem("share", &taken);
+    let share = |index: usize| Symbol::new(&format!("{stem}{index}"));
+    let held: Vec<usize> = (0..regimes.len())
+        .filter(|index| regimes[*index].1 == Regime::Held)
+        .collect();
+    // The velocities that are held, each in terms of what is left.
+    let mut fixed: BTreeMap<Symbol, Expr> = BTreeMap::new();
+    for index in &held {
+        let u = regimes[*index].0.u.substitute_all(&fixed)?;
+        let Some((velocity, value)) = solved(&u, equations, numbers)? else {
+            return Ok(None);
+        };
+        for other in fixed.values_mut() {
+            *other = other.substitute(velocity, &value)?;
+        }
+        fixed.insert(velocity, value);
+    }
+    let replaced = |expression: &Expr| -> Result<Expr, ExprError> {
+        expression
+            .fold(|expr, children: &[Expr]| on_surfaces(expr, children, regimes, &share))?
+            .substitute_all(&fixed)
     };
-    let side = |side: i64| {
-        right
+    let right: Vec<Expr> = equations.right.iter().map(replaced).collect::<Result<_, _>>()?;
+    let rate_of = |u: &Expr| -> Result<Expr, ExprError> {
+        let mut parts = vec![u.differentiate(Symbol::new("t"))?];
+        for (state, rate) in equations.states.iter().zip(&right) {
+            parts.push(u.differentiate(*state)? * rate);
+        }
+        Expr::sum(parts).substitute_all(&fixed)
+    };
+    let mut matrix = Vec::new();
+    let mut rest = Vec::new();
+    let none: BTreeMap<Symbol, Expr> = held.iter().map(|index| (share(*index), Expr::zero())).collect();
+    for index in &held {
+        let rate = rate_of(&regimes[*index].0.u)?;
+        let row: Vec<Expr> = held
             .iter()
-            .map(|right| on_side(right, side))
-            .collect::<Result<Vec<Expr>, _>>()
+            .map(|column| rate.differentiate(share(*column)))
+            .collect::<Result<_, _>>()?;
+        // Friction enters in proportion, or nothing is known of what holds.
+        if row
+            .iter()
+            .any(|entry| held.iter().any(|column| entry.contains(share(*column))))
+        {
+            return Ok(None);
+        }
+        matrix.push(row);
+        rest.push(-rate.substitute_all(&none)?);
+    }
+    let jumps: Vec<Expr> = (0..held.len()).map(|row| matrix[row][row].clone()).collect();
+    if jumps.iter().any(Expr::is_zero) {
+        return Ok(None);
+    }
+    let singular = || crate::mechanics::MechanicsError::Singular(Expr::zero());
+    let Ok(found) = linear::solution(&matrix, &rest, singular) else {
+        return Ok(None);
     };
-    Ok(Some(Jump {
-        speed: zero,
-        sides: [side(1)?, side(-1)?],
+    let shares: Vec<(usize, Expr)> = held.iter().copied().zip(found).collect();
+    let values: BTreeMap<Symbol, Expr> = shares
+        .iter()
+        .map(|(index, value)| (share(*index), value.clone()))
+        .collect();
+    let right = right
+        .iter()
+        .map(|rate| rate.substitute_all(&values))
+        .collect::<Result<_, _>>()?;
+    let mut events = Vec::new();
+    for (index, (surface, regime)) in regimes.iter().enumerate() {
+        events.extend(match regime {
+            Regime::Typed => [(); EVENTS].map(|()| Event::record(Expr::from(1))),
+            Regime::Held => {
+                let share = values.get(&share(index)).cloned().unwrap_or_else(Expr::zero);
+                let [one, more] = [1.0, 1.0 + 2.0 * ROUNDING].map(number);
+                [
+                    Event::stop(&share - &one).rising(),
+                    Event::stop(&share + &one).falling(),
+                    Event::stop(&share - &more).rising(),
+                    Event::stop(&share + &more).falling(),
+                ]
+            }
+            Regime::Left(side) => {
+                let away = Expr::from(*side) * surface.u.substitute_all(&fixed)?;
+                let unseen = number(UNSEEN * surface.strength);
+                [
+                    Event::stop(away.clone()).falling(),
+                    Event::stop(away + unseen).falling(),
+                    Event::record(Expr::from(1)),
+                    Event::record(Expr::from(1)),
+                ]
+            }
+        });
+    }
+    Ok(Some(Sliding {
+        right,
+        held: !held.is_empty(),
+        fixed,
+        shares,
+        jumps,
+        events,
     }))
+}
+
+/// A finite number as an expression.
+fn number(value: f64) -> Expr {
+    from_f64(value).map_or_else(Expr::zero, Expr::number)
+}
+
+/// A part of a rate on these surfaces: `sgn`, `H` and `abs` of what is zero there, or has been left to one side.
+fn on_surfaces(
+    expr: &Expr,
+    children: &[Expr],
+    regimes: &Regimes,
+    share: &dyn Fn(usize) -> Symbol,
+) -> Result<Expr, ExprError> {
+    let Node::Function(function @ (Function::Sign | Function::Step | Function::Absolute), arguments) = expr.node()
+    else {
+        return expr.with_children(children);
+    };
+    let meant = regimes.iter().enumerate().find_map(|(index, (surface, regime))| {
+        let known = surface
+            .arguments
+            .iter()
+            .find(|(known, _)| arguments.first() == Some(known));
+        known.map(|(_, same)| (index, *regime, if *same { 1 } else { -1 }))
+    });
+    let sign = match meant {
+        None | Some((_, Regime::Typed, _)) => return expr.with_children(children),
+        Some((index, Regime::Held, same)) => Expr::from(same) * Expr::from(share(index)),
+        Some((_, Regime::Left(side), same)) => Expr::from(same * side),
+    };
+    Ok(match (function, meant, arguments.first()) {
+        (Function::Sign, ..) => sign,
+        (Function::Step, ..) => (Expr::from(1) + sign) * Expr::number(ratio(1, 2)),
+        (_, Some((_, Regime::Left(_), _)), Some(argument)) => sign * argument,
+        _ => Expr::zero(),
+    })
 }

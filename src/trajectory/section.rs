@@ -12,7 +12,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Piece, Trajectory, TrajectoryError};
+use super::{Trajectory, TrajectoryError};
 use crate::expr::Expr;
 use crate::mechanics::Rates;
 use crate::symbol::Symbol;
@@ -123,12 +123,12 @@ impl Trajectory {
         let times: Vec<f64> = match &course.section {
             None => vec![],
             Some(Section::Rising(expression)) => {
-                let moving = self.pieces.iter().filter_map(|piece| match piece {
-                    Piece::Moving(path) => Some(path.occurrences()),
-                    Piece::Held(_) => None,
+                let met = self.pieces.iter().flat_map(|piece| {
+                    let own = |occurrence: &&Occurrence| occurrence.event < piece.recorded;
+                    piece.path.occurrences().iter().filter(own)
                 });
                 let (crossed, turned): (Vec<&Occurrence>, Vec<&Occurrence>) =
-                    moving.flatten().partition(|occurrence| occurrence.event == 0);
+                    met.partition(|occurrence| occurrence.event == 0);
                 touched = self.turns_on(expression, turned.into_iter().map(|turn| turn.time).collect());
                 let touches = |time: f64| {
                     touched

@@ -560,6 +560,187 @@ fn a_driven_motion_sticks_and_lets_go() {
     }
 }
 
+fn mechanism(
+    [kinetic, potential, dissipation]: [&str; 3],
+    forces: &[(&str, &str)],
+    start: &[(&str, f64)],
+    duration: f64,
+) -> Course {
+    let mut mechanism = Mechanism::parse(&["x", "y"], kinetic, potential).expect("a mechanism");
+    mechanism.dissipation = expression(dissipation);
+    mechanism.forces = forces
+        .iter()
+        .map(|(name, force)| (Symbol::new(name), expression(force)))
+        .collect();
+    let equations = mechanism.equations().expect("equations");
+    let mut course = Course::of_mechanism(&mechanism, &equations).expect("a course");
+    for (name, value) in start {
+        course.begin(Symbol::new(name), *value).expect("a state");
+    }
+    course.duration = duration;
+    course
+}
+
+fn followed(course: Course) -> lindstedt::trajectory::Trajectory {
+    let motion = course.follow().expect("a motion");
+    assert!(motion.is_complete(), "{:?} at {}", motion.reason(), motion.end());
+    let residual = motion.balance.as_ref().expect("a balance").residual;
+    assert!(residual < 1e-9, "{residual}");
+    motion
+}
+
+/// What friction holds while the rest goes on, in closed form: one of two blocks, two blocks on each other, a block on a belt.
+#[test]
+fn friction_holds_one_of_several_coordinates() {
+    // The spring between them, 1/2 times y, is too weak for the friction of 2/5: y'' + 3/2 y = 0.
+    let blocks = ["(x'^2 + y'^2)/2", "(x^2 + y^2)/2 + (x - y)^2/4", "2/5*abs(x')"];
+    let motion = followed(mechanism(blocks, &[], &[("y", 0.79)], 40.0));
+    assert_eq!(motion.held().collect::<Vec<_>>(), [[0.0, 40.0]]);
+    for index in 0..=400 {
+        let t = 0.1 * f64::from(index);
+        let state = motion.at(t).expect("a state");
+        assert_eq!((state[0], state[2]), (0.0, 0.0));
+        assert!(
+            (state[1] - 0.79 * (1.5_f64.sqrt() * t).cos()).abs() < 1e-12,
+            "{t}: {state:?}"
+        );
+    }
+    // Only just too strong: let go where y/2 = 2/5.
+    let motion = followed(mechanism(blocks, &[], &[("y", 0.7), ("y'", 0.7)], 40.0));
+    let size = (0.49 + 0.49 / 1.5_f64).sqrt();
+    let phase = (0.7 / 1.5_f64.sqrt()).atan2(0.7);
+    let let_go = (phase - (0.8 / size).acos()) / 1.5_f64.sqrt();
+    let [from, until] = motion.held().next().expect("a hold");
+    assert!(from == 0.0 && (until - let_go).abs() < 1e-12, "{until} {let_go}");
+    assert!(motion.at(until + 0.3).expect("a state")[0] > 1e-4);
+    // Three quarters of the mass ride on the rest: 4 x'' + x = 0 while 3 |x''| <= 1/2.
+    let riding = ["x'^2/2 + 3*y'^2/2", "x^2/2", "abs(x' - y')/2"];
+    let motion = followed(mechanism(riding, &[], &[("x", 0.6), ("y", 0.1)], 30.0));
+    for index in 0..=300 {
+        let t = 0.1 * f64::from(index);
+        let (state, wave) = (motion.at(t).expect("a state"), (0.5 * t).cos());
+        assert!(
+            (state[0] - 0.6 * wave).abs() < 1e-12 && (state[1] - 0.6 * wave + 0.5).abs() < 1e-12,
+            "{t}"
+        );
+    }
+    // Twice that is too much at the turning points: x'' + x = -1/2 sgn(x' - y') until both are equally fast.
+    let motion = followed(mechanism(riding, &[], &[("x", 1.2)], 30.0));
+    assert!(motion.held().all(|[from, until]| from > 0.0 && until > from) && motion.held().count() > 0);
+    // On a belt it is carried until the spring is too strong, and then swings about where friction alone would hold it: it comes back to
+    // the speed of the belt once a period, and touches it.
+    let mut course = Course::of_equation(&Oscillator::parse("x'' + x + alpha*sgn(x' - 1/2) = 0").expect("an equation"));
+    course.begin("x'".into(), 0.5).expect("a state");
+    course.values = [("alpha".into(), 0.3)].into();
+    course.duration = 40.0;
+    let motion = followed(course);
+    for index in 0..=400 {
+        let t = 0.1 * f64::from(index);
+        let carried = if t < 0.6 { 0.5 * t } else { 0.3 + 0.5 * (t - 0.6).sin() };
+        let x = motion.at(t).expect("a state")[0];
+        assert!((x - carried).abs() < 1e-7, "{t}: {x} {carried}");
+    }
+}
+
+/// Two masses by time stepping, the friction implicit: in every step the impulses of friction on x', y' and x' - y' are projected on their
+/// bounds until the velocities fit (Moreau 1988), the rest is the midpoint rule. Answers x, y at the end of every hundredth of time.
+fn time_stepping(
+    mass: [f64; 2],
+    bounds: [f64; 3],
+    belt: f64,
+    force: impl Fn(f64, [f64; 2], [f64; 2]) -> [f64; 2],
+    (mut place, mut speed): ([f64; 2], [f64; 2]),
+    until: f64,
+) -> Vec<[f64; 2]> {
+    const STEPS: u32 = 100;
+    let step = 0.01 / f64::from(STEPS);
+    let mut places = vec![place];
+    let mut impulse = [0.0_f64; 3];
+    for index in 0..(until * 100.0).round() as u32 * STEPS {
+        let middle = (f64::from(index) + 0.5) * step;
+        let half = [0, 1].map(|body| place[body] + 0.5 * step * speed[body]);
+        let push = force(middle, half, speed);
+        let free = [0, 1].map(|body| speed[body] + step * push[body] / mass[body]);
+        let velocity = |impulse: [f64; 3]| {
+            [
+                free[0] + (impulse[0] + impulse[2]) / mass[0],
+                free[1] + (impulse[1] - impulse[2]) / mass[1],
+            ]
+        };
+        for _ in 0..60 {
+            let before = impulse;
+            for (contact, inertia) in [mass[0], mass[1], mass[0] * mass[1] / (mass[0] + mass[1])]
+                .into_iter()
+                .enumerate()
+            {
+                let now = velocity(impulse);
+                let slip = [now[0] - belt, now[1], now[0] - now[1]][contact];
+                let bound = step * bounds[contact];
+                impulse[contact] = (impulse[contact] - inertia * slip).clamp(-bound, bound);
+            }
+            if before == impulse {
+                break;
+            }
+        }
+        let now = velocity(impulse);
+        place = [0, 1].map(|body| half[body] + 0.5 * step * now[body]);
+        speed = now;
+        if (index + 1).is_multiple_of(STEPS) {
+            places.push(place);
+        }
+    }
+    places
+}
+
+/// Stick and slip of two driven masses with friction under one, under both and between them, and on a belt, beside time stepping.
+#[test]
+fn stick_and_slip_of_several_coordinates_is_that_of_time_stepping() {
+    let mut held = 0;
+    for (mass, bounds, belt, drive, eta) in [
+        ([1.0, 1.0], [0.3, 0.0, 0.0], 0.0, 0.8, 0.7),
+        ([1.0, 2.0], [0.25, 0.4, 0.0], 0.0, 1.1, 0.6),
+        ([2.0, 0.5], [0.0, 0.0, 0.35], 0.0, 0.9, 1.3),
+        ([1.5, 1.0], [0.2, 0.0, 0.3], 0.0, 1.4, 0.9),
+        ([1.0, 1.0], [0.5, 0.0, 0.0], 0.4, 0.3, 1.7),
+        ([1.0, 0.7], [0.5, 0.1, 0.0], -0.2, 0.6, 0.45),
+    ] {
+        let kinetic = format!("{}*x'^2/2 + {}*y'^2/2", mass[0], mass[1]);
+        // A friction of zero is none, and holds nothing.
+        let dissipation = format!("F*abs(y') + {}*abs(x' - y') + (x'^2 + y'^2)/40", bounds[2]);
+        let on_belt = format!("-{}*sgn(x' - ({belt}))", bounds[0]);
+        let shake = format!("{drive}*cos({eta}*t)");
+        let potential = "x^2/2 + y^2/2 + (x - y)^2/4";
+        let mut course = mechanism(
+            [&kinetic, potential, &dissipation],
+            &[("x", &on_belt), ("y", &shake)],
+            &[("x", 0.4), ("y", -0.3)],
+            25.0,
+        );
+        course.values = [("F".into(), bounds[1])].into();
+        let motion = followed(course.clone());
+        let force = |t: f64, [x, y]: [f64; 2], [u, v]: [f64; 2]| {
+            let between = 0.5 * (x - y);
+            [
+                -x - between - 0.05 * u,
+                -y + between - 0.05 * v + drive * (eta * t).cos(),
+            ]
+        };
+        let truth = time_stepping(mass, bounds, belt, force, ([0.4, -0.3], [0.0; 2]), 25.0);
+        for (index, [x, y]) in truth.iter().enumerate() {
+            let t = 0.01 * index as f64;
+            let state = motion.at(t.min(25.0)).expect("a state");
+            let apart = (state[0] - x).abs().max((state[1] - y).abs());
+            assert!(apart < 5e-4, "{mass:?} {bounds:?} {belt} at {t}: {state:?} {x} {y}");
+        }
+        held += motion.held().count();
+        // The other integrator finds the same.
+        course.duration = 12.0;
+        let other = course.follow_by(Integrator::RungeKutta).expect("a motion");
+        assert!(motion.difference(&other) < 1e-7, "{mass:?} {bounds:?} {belt}");
+    }
+    assert!(held > 8, "{held}");
+}
+
 /// Kept by hand: a root is opened by its own gate alone, an energy may have steps that vanish where they begin, masses of either sign
 /// have a mass matrix, and rigid motions are no growth.
 #[test]

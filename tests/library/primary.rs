@@ -599,15 +599,18 @@ fn torque_at_rest(case: &PrimaryCase, t: f64, state: &PrimaryState) -> f64 {
     state.x.sin() + state.x.cos() * acceleration + push(depth(model.right, 1.0)) - push(depth(model.left, -1.0))
 }
 
-/// The number of moments, of so many, at which the pendulum is held; at each the torque is at most alpha, and from one to the next the
-/// pendulum slips only where the friction that opposes it is overcome.
+/// The number of moments, of so many, at which the pendulum has stood still since the one before; at each the torque is at most alpha.
 fn held_moments(motion: &PrimaryMotion, moments: u32) -> usize {
     let alpha = motion.case.model.alpha;
     let mut held = 0;
+    let mut before = f64::NAN;
     for index in 0..=moments {
         let t = motion.end * f64::from(index) / f64::from(moments);
         let state = motion.at(t).expect("a state");
-        if state.velocity == 0.0 {
+        // At a turning point alone nothing is held.
+        let stays = state.velocity == 0.0 && state.x == before;
+        before = state.x;
+        if stays {
             held += 1;
             let torque = torque_at_rest(&motion.case, t, &state);
             assert!(torque.abs() <= alpha * (1.0 + 1e-9), "{t}: {torque} {:?}", motion.case);
@@ -636,17 +639,17 @@ const STICK_SLIP: &str = include_str!("../../examples/primary/stick-slip.toml");
 #[test]
 fn a_pendulum_is_held_only_while_friction_can_bear_the_torque() {
     let mut held = 0;
-    for index in 0..=30 {
-        let displacement = 0.01 + 0.0005 * f64::from(index);
-        held += held_moments(&example(STICK_SLIP, &[("displacement", displacement)]), 20_000);
+    for index in 0..8 {
+        let displacement = 0.0103 + 0.002 * f64::from(index);
+        held += held_moments(&example(STICK_SLIP, &[("displacement", displacement)]), 3000);
     }
     for (force, frequency) in [(0.3, 9.0), (0.8, 11.0), (1.5, 14.0), (0.2, 17.0), (2.0, 5.0)] {
         let varied = [("force", force), ("frequency", frequency), ("alpha", 0.2)];
-        held += held_moments(&example(STICK_SLIP, &varied), 20_000);
+        held += held_moments(&example(STICK_SLIP, &varied), 3000);
     }
-    assert!(held > 100_000, "{held}");
-    // By an event-driven Runge-Kutta of order 8 (scipy's DOP853, 1e-11) with the contact as |d|^(3/2) in t.
-    for (displacement, impacts, rest) in [(0.0163, 7, 48.655_268), (0.02, 10, 59.512_119)] {
+    assert!(held > 5000, "{held}");
+    // By an event-driven Runge-Kutta of order 8 (scipy's DOP853, 1e-11, steps of 1e-5 in contact) with the contact as |d|^(3/2) in t.
+    for (displacement, impacts, rest) in [(0.0163, 7, 48.655_261_6), (0.02, 10, 59.512_111_5)] {
         let motion = example(STICK_SLIP, &[("displacement", displacement)]);
         assert_eq!(motion.impacts.len(), impacts, "{displacement}");
         assert!(
@@ -748,7 +751,7 @@ fn a_start_inside_a_barrier_is_a_start_in_contact() {
         },
         20.0,
     );
-    assert_eq!(held_moments(&motion, 2000), 2001);
+    assert_eq!(held_moments(&motion, 2000), 2000);
     // The left barrier mirrors the right one.
     let mirrored = Model {
         left: Some(-0.1),

@@ -42,7 +42,7 @@ pub struct MotionDocument {
     /// they are known to the end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub known_until: Option<f64>,
-    /// Where dry friction holds it at rest: from when until when.
+    /// The stretches of time, from when until when, on which dry friction holds something: at rest, on a belt or on another body.
     pub held: Vec<[f64; 2]>,
     /// Why it ends where it does.
     pub stopped: String,

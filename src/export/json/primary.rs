@@ -178,7 +178,7 @@ pub struct PrimarySweepRow {
     pub amplitude: Option<f64>,
     /// The amplitude in the long run with the damper locked; null at an undamped resonance, and where no force drives it.
     pub locked: Option<f64>,
-    /// The same without the damper.
+    /// That amplitude without the damper.
     pub without: Option<f64>,
     /// The number of impacts in the last quarter of the run; null for a run that was stopped before it began.
     pub impacts: Option<usize>,
@@ -188,7 +188,7 @@ pub struct PrimarySweepRow {
     pub rest_time: Option<f64>,
     /// The rest time with the damper locked; null where it never rests, creeps, or a force drives it.
     pub rest_locked: Option<f64>,
-    /// The same without the damper.
+    /// The rest time without the damper; null likewise.
     pub rest_without: Option<f64>,
     /// One unit of time in this run, in seconds.
     pub time_unit: f64,

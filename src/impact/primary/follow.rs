@@ -83,7 +83,7 @@ pub fn simulate_primary(case: PrimaryCase, settings: &PrimarySettings) -> Result
 /// So many phases without length in a row are one too many.
 const IDLE: usize = 8;
 
-/// What rounding leaves of a torque or a speed that is zero, in parts of the friction.
+/// The torque or the speed that rounding leaves of zero, in parts of the friction.
 const ROUNDING: f64 = 1e-12;
 
 /// What the pendulum is doing; the direction is that of dry friction.

@@ -21,9 +21,9 @@ pub enum PrimaryParameter {
     Stiffness,
     /// The coefficient of its dashpot.
     Damping,
-    /// Where it begins.
+    /// Its displacement at the start.
     Displacement,
-    /// How fast it begins.
+    /// Its speed at the start.
     Speed,
     /// The amplitude of the force on it.
     Force,

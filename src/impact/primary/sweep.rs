@@ -8,7 +8,7 @@ use crate::parallel::each;
 /// The part of a run, its last, that counts as the long run.
 const LAST: f64 = 0.25;
 
-/// What came of one motion of a sweep.
+/// The result of one motion of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrimaryRow {
     /// The main mass.

@@ -62,7 +62,7 @@ fn a_sweep_is_the_same_on_any_number_of_threads() {
     assert_eq!(counted.into_inner(), motions.len());
 }
 
-/// What was never begun has nothing to show: no impacts, no depth, no end.
+/// A motion that was never begun has nothing to show: no impacts, no depth, no end.
 #[test]
 fn a_motion_that_was_never_begun_shows_nothing() {
     use lindstedt::Interrupt;

@@ -36,7 +36,7 @@ pub struct TrajectoryReport<'a> {
     pub known_until: Option<f64>,
 }
 
-/// What speaks against a motion that was followed to its end.
+/// The reason not to trust a motion that was followed to its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Doubt {
     /// The part of the largest energy that is not accounted for.

@@ -366,7 +366,7 @@ impl System {
             right: right.to_vec(),
             numbers: numbers.clone(),
             critical: vec![],
-            narrow: narrow::arguments(right, state),
+            narrow: narrow::arguments(right, state, &narrow::guards_in(right, numbers), numbers),
         };
         taylor::check(&system, &[])?;
         Ok(system)

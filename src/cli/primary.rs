@@ -7,7 +7,7 @@ use lindstedt::impact::primary::{
 };
 use lindstedt::impact::sweep::{Axis, grid_size, grid_values};
 use lindstedt::problem::Problem;
-use lindstedt::report::{self, PrimaryReport, PrimarySweepReport};
+use lindstedt::report::{self, PrimaryReport, PrimarySweepReport, TRUSTED};
 use lindstedt::verify::Verdict;
 
 use super::answer::{Answer, Draw, no_such};
@@ -23,9 +23,6 @@ pub(super) struct Asked<'a> {
     pub sweep: &'a [Axis],
     pub common: &'a Common,
 }
-
-/// Without `--tolerance`: the energy that may go astray, relative to the largest.
-const ENERGY_TOLERANCE: f64 = 1e-6;
 
 pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
     if asked.common.format() == Format::Latex {
@@ -68,21 +65,17 @@ fn one(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
             format => no_such(format),
         },
     };
-    let kept = motion.energy.residual <= common.tolerance.unwrap_or(ENERGY_TOLERANCE);
+    let kept = motion.energy.residual <= common.tolerance.unwrap_or(TRUSTED);
     Ok(Outcome {
-        note: match (motion.is_complete(), motion.energy.residual <= ENERGY_TOLERANCE) {
-            (false, _) => Some(format!(
+        note: match report.doubt() {
+            _ if !motion.is_complete() => Some(format!(
                 "warning: stopped early, what there is is kept: {}",
                 motion.stop
             )),
-            (true, false) => Some(format!(
-                "warning: {} of the largest energy is not accounted for: do not trust this motion",
-                significant(motion.energy.residual, 2)
-            )),
-            (true, true) => None,
+            doubt => doubt.map(|doubt| format!("warning: {doubt}")),
         },
         verdict: Some(Verdict::of(kept && motion.is_complete())),
-        partial: !motion.is_complete(),
+        partial: !report.is_complete(),
         ..answer.outcome(common)?
     })
 }

@@ -1,10 +1,10 @@
 //! `lindstedt simulate PROBLEM` of an equation or a mechanism of its own.
 
-use lindstedt::export::{decimal, json, significant, trajectory};
+use lindstedt::export::{decimal, json, trajectory};
 use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::impact::sweep::{Axis, grid_size, grid_values};
 use lindstedt::problem::Problem;
-use lindstedt::report::{self, MotionSweep, TrajectoryReport};
+use lindstedt::report::{self, MotionSweep, TRUSTED, TrajectoryReport};
 use lindstedt::system::{End, Integrator, SystemError};
 use lindstedt::trajectory::{Course, DISPLACEMENT, Section, SweptMotion, Trajectory, TrajectoryError, in_words, sweep};
 use lindstedt::verify::Verdict;
@@ -38,9 +38,6 @@ pub(super) struct Asked<'a> {
     pub integrators: &'a [Integrator],
     pub common: &'a Common,
 }
-
-/// Without `--tolerance`: the energy that may go astray, and the difference of two integrators.
-const TOLERANCE: f64 = 1e-6;
 
 pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
     let common = asked.common;
@@ -88,34 +85,27 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
         .into_iter()
         .flatten()
         .find(|motion| !motion.is_complete());
-    let allowed = common.tolerance.unwrap_or(TOLERANCE);
-    let doubtful = match (&motion.balance, &judge) {
-        (Some(balance), _) if balance.residual > TOLERANCE => Some(format!(
-            "warning: {} of the largest energy is not accounted for: do not trust this motion",
-            significant(balance.residual, 2)
+    let allowed = common.tolerance.unwrap_or(TRUSTED);
+    let doubt = report.doubt();
+    // A section is looked at for what motions nearby have in common.
+    let known = report.known_until.filter(|_| course.section.is_none());
+    let warning = match (broken, doubt) {
+        (Some(motion), _) => Some(format!(
+            "stopped early, what there is is kept: {}",
+            in_words(motion.reason())
         )),
-        (_, Some(judge)) if motion.difference(judge) > TOLERANCE => Some(format!(
-            "warning: the two integrators differ by {} of the largest displacement: do not trust this motion so far",
-            significant(motion.difference(judge), 2)
-        )),
-        // A section is looked at for what motions nearby have in common.
-        _ => report.known_until.filter(|_| course.section.is_none()).map(|known| {
+        (None, Some(doubt)) => Some(doubt.to_string()),
+        (None, None) => known.map(|known| {
             format!(
-                "warning: six digits hold until t = {} only: then a start displaced by {DISPLACEMENT:e} of it is elsewhere",
+                "six digits hold until t = {} only: then a start displaced by {DISPLACEMENT:e} of it is elsewhere",
                 decimal(known)
             )
         }),
     };
     Ok(Outcome {
-        note: match broken {
-            Some(motion) => Some(format!(
-                "warning: stopped early, what there is is kept: {}",
-                in_words(motion.reason())
-            )),
-            None => doubtful,
-        },
+        note: warning.map(|warning| format!("warning: {warning}")),
         verdict: Some(verdict(&motion, judge.as_ref(), allowed)),
-        partial: broken.is_some(),
+        partial: !report.is_complete(),
         ..answer.outcome(common)?
     })
 }
@@ -135,7 +125,7 @@ fn by_both(course: &Course) -> Result<[Trajectory; 2], Failure> {
     };
     let judge = by(Integrator::RungeKutta);
     let passed = match (&end, &judge) {
-        (Ok(series), Ok(judge)) => judge.is_complete() || judge.end() > series.end() * (1.0 + TOLERANCE),
+        (Ok(series), Ok(judge)) => judge.is_complete() || judge.end() > series.end() * (1.0 + TRUSTED),
         (Err(_), Ok(judge)) => judge.end() > 0.0,
         (_, Err(_)) => false,
     };

@@ -64,8 +64,14 @@ pub fn csv(report: &PrimaryReport) -> String {
             );
         }
     }
-    if !motion.is_complete() {
-        let _ = writeln!(text, "# incomplete: {}", motion.stop);
+    match report.doubt() {
+        _ if !motion.is_complete() => {
+            let _ = writeln!(text, "# incomplete: {}", motion.stop);
+        }
+        Some(doubt) => {
+            let _ = writeln!(text, "# incomplete: {doubt}");
+        }
+        None => {}
     }
     text
 }

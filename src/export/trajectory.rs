@@ -56,8 +56,14 @@ pub fn csv(report: &TrajectoryReport) -> String {
             let _ = writeln!(text, "{time},{}", state.join(","));
         }
     }
-    if !motion.is_complete() {
-        let _ = writeln!(text, "# incomplete: {}", in_words(motion.reason()));
+    match report.doubt() {
+        _ if !motion.is_complete() => {
+            let _ = writeln!(text, "# incomplete: {}", in_words(motion.reason()));
+        }
+        Some(doubt) => {
+            let _ = writeln!(text, "# incomplete: {doubt}");
+        }
+        None => {}
     }
     text
 }

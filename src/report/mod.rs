@@ -41,7 +41,7 @@ pub use solution::solution;
 pub use stability::{StabilityReport, stability};
 #[cfg(feature = "plot")]
 pub(crate) use trajectory::section_in_words;
-pub use trajectory::{MotionSweep, TrajectoryReport, motion_sweep, trajectory};
+pub use trajectory::{Doubt, MotionSweep, TRUSTED, TrajectoryReport, motion_sweep, trajectory};
 
 use std::borrow::Cow;
 

@@ -1,5 +1,6 @@
 //! The main mass with its damper: what it is, what happened, where the energy went, and what the damper is worth.
 
+use super::trajectory::{Doubt, TRUSTED};
 use super::{Block, Document, Heading};
 use crate::decimal::{decimal, significant};
 use crate::impact::Units;
@@ -19,6 +20,19 @@ pub struct PrimaryReport<'a> {
     pub units: &'a Units,
     /// The times at which states are asked for, in units of 1/omega.
     pub samples: &'a [f64],
+}
+
+impl PrimaryReport<'_> {
+    /// The energy that is not accounted for, where it is more than [`TRUSTED`].
+    pub fn doubt(&self) -> Option<Doubt> {
+        let residual = self.motion.energy.residual;
+        (residual > TRUSTED).then_some(Doubt::Energy(residual))
+    }
+
+    /// Whether the motion was followed as long as asked, and its energy is accounted for.
+    pub fn is_complete(&self) -> bool {
+        self.motion.is_complete() && self.doubt().is_none()
+    }
 }
 
 /// The document of a motion.

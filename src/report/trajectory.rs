@@ -19,6 +19,10 @@ const MOST_ON_SECTION: usize = 40;
 /// The rows of the table where no samples are asked for.
 const ROWS: u32 = 20;
 
+/// The part of the energy that may go astray, or of the largest displacement by which two integrators may differ, in a motion that is
+/// trusted.
+pub const TRUSTED: f64 = 1e-6;
+
 /// A motion to be reported.
 #[derive(Clone, Copy, Debug)]
 pub struct TrajectoryReport<'a> {
@@ -32,7 +36,48 @@ pub struct TrajectoryReport<'a> {
     pub known_until: Option<f64>,
 }
 
+/// The reason not to trust a motion that was followed to its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Doubt {
+    /// The part of the largest energy that is not accounted for.
+    Energy(f64),
+    /// The difference of the two integrators, over the largest displacement.
+    Integrators(f64),
+}
+
+impl std::fmt::Display for Doubt {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Energy(part) => write!(
+                f,
+                "{} of the largest energy is not accounted for: do not trust this motion",
+                significant(*part, 2)
+            ),
+            Self::Integrators(difference) => write!(
+                f,
+                "the two integrators differ by {} of the largest displacement: do not trust this motion so far",
+                significant(*difference, 2)
+            ),
+        }
+    }
+}
+
 impl TrajectoryReport<'_> {
+    /// The energy that is not accounted for, or the difference of two integrators, where it is more than [`TRUSTED`].
+    pub fn doubt(&self) -> Option<Doubt> {
+        let residual = self.motion.balance.as_ref().map(|balance| balance.residual);
+        let difference = self.judge.map(|judge| self.motion.difference(judge));
+        let is_doubtful = |part: &f64| *part > TRUSTED;
+        let energy = residual.filter(is_doubtful).map(Doubt::Energy);
+        energy.or_else(|| difference.filter(is_doubtful).map(Doubt::Integrators))
+    }
+
+    /// Whether the motion, and its judge, were followed as long as asked, and nothing speaks against them.
+    pub fn is_complete(&self) -> bool {
+        let motions = [Some(self.motion), self.judge];
+        motions.into_iter().flatten().all(Trajectory::is_complete) && self.doubt().is_none()
+    }
+
     /// The times of the table: those asked for, or equally spaced ones.
     pub fn times(&self) -> Vec<f64> {
         let end = self.motion.end();

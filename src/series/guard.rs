@@ -43,7 +43,7 @@ impl Guard {
 
     /// The number that this guard is times another; `None` where they are not in proportion, or one of them is zero.
     pub(crate) fn ratio_to(&self, other: &Self) -> Option<f64> {
-        /// What rounding leaves between coefficients that are in proportion.
+        /// The relative difference that rounding leaves between ratios that are equal.
         const ROUNDING: f64 = 1e-14;
         let mut ratios = self
             .terms

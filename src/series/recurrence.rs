@@ -45,7 +45,7 @@ pub struct Recurrences {
     outputs: Vec<usize>,
     /// Sine and cosine of a series, or their hyperbolic sisters: who has one has the other.
     waves: HashMap<(usize, bool), [usize; 2]>,
-    /// Those of the corners of the tape, in their order.
+    /// The guards of the corners of the tape, in their order.
     guards: Guards,
 }
 

@@ -9,8 +9,11 @@
 //! moves with the states and is as smooth as they are, so that the places where it does something special are known ahead.
 //! `conservative::features` asks the same of a force at rest.
 
+use std::collections::BTreeMap;
+
 use crate::exact::rational::to_f64;
 use crate::expr::{Expr, Function, Node};
+use crate::series::guard::Guard;
 use crate::symbol::Symbol;
 use num_traits::Signed as _;
 
@@ -47,18 +50,59 @@ const ROUNDING: f64 = 1e-13;
 /// So many widths away a place is nothing in double precision: from there on steps may end farther apart.
 const FAR: f64 = 32.0;
 
-/// The arguments in the right sides that move with the states. Waves are to be seen everywhere, corners end a step by themselves, and
-/// what depends on the time alone is known beforehand.
-pub(super) fn arguments(right: &[Expr], states: &[Symbol]) -> Vec<Argument> {
+/// The arguments in the right sides that move with the states. Waves are to be seen everywhere, corners and the roots that begin at one of
+/// these guards end a step by themselves, and what depends on the time alone is known beforehand.
+pub(super) fn arguments(
+    right: &[Expr],
+    states: &[Symbol],
+    guards: &[Guard],
+    values: &BTreeMap<Symbol, f64>,
+) -> Vec<Argument> {
     let mut found: Vec<Argument> = Vec::new();
     for node in right.iter().flat_map(Expr::unique_nodes) {
         let Some(argument) = argument(node) else { continue };
         let moves = states.iter().any(|state| argument.expression.contains(*state));
-        if moves && !found.contains(&argument) {
+        let begins_at_guard = || {
+            let root = matches!(argument.kind, Kind::Power(_)).then(|| root_of_square(&argument.expression, values));
+            let root = root.flatten().map(|root| Guard::new(root, values));
+            root.is_some_and(|root| guards.iter().any(|guard| root.ratio_to(guard).is_some()))
+        };
+        if moves && !begins_at_guard() && !found.contains(&argument) {
             found.push(argument);
         }
     }
     found
+}
+
+/// `u` of numbers times `u^2`.
+fn root_of_square<'a>(expression: &'a Expr, values: &BTreeMap<Symbol, f64>) -> Option<&'a Expr> {
+    let is_number = |factor: &Expr| factor.symbols().iter().all(|name| values.contains_key(name));
+    let (_, factors) = expression.factors();
+    let mut others = factors.iter().filter(|factor| !is_number(factor));
+    let (only, None) = (others.next()?, others.next()) else {
+        return None;
+    };
+    match only.node() {
+        Node::Power(base, exponent) if *exponent == Expr::from(2) => Some(base),
+        _ => None,
+    }
+}
+
+/// The guards of the corners in some expressions.
+pub(super) fn guards_in(expressions: &[Expr], values: &BTreeMap<Symbol, f64>) -> Vec<Guard> {
+    let nodes = expressions.iter().flat_map(Expr::unique_nodes);
+    let argument = |node: &Expr| match node.node() {
+        Node::Function(Function::Absolute | Function::Sign | Function::Step, arguments) => arguments.first().cloned(),
+        Node::Function(Function::Maximum | Function::Minimum, arguments) => match arguments.as_slice() {
+            [one, other] => Some(one - other),
+            _ => None,
+        },
+        _ => None,
+    };
+    nodes
+        .filter_map(argument)
+        .map(|argument| Guard::new(&argument, values))
+        .collect()
 }
 
 fn argument(node: &Expr) -> Option<Argument> {
@@ -286,7 +330,10 @@ mod tests {
 
     fn found(text: &str) -> Vec<String> {
         let expression: Expr = text.parse().expect(text);
-        let found = arguments(&[expression], &["x".into(), "v".into()]);
+        let values = BTreeMap::from([(Symbol::new("k"), 3.0)]);
+        let expressions = [expression];
+        let guards = guards_in(&expressions, &values);
+        let found = arguments(&expressions, &["x".into(), "v".into()], &guards, &values);
         found.iter().map(|argument| argument.expression.to_string()).collect()
     }
 
@@ -297,6 +344,8 @@ mod tests {
             ("exp(-1e6*t^2) + x", vec![]),
             ("x*exp(-1e6*(x - t)^2)", vec!["-1000000*(x - t)^2"]),
             ("tanh(1e3*v)/(1 + x^2)", vec!["1000*v", "x^2 + 1"]),
+            ("(k*(x - 2)^2)^(3/4)*H(4 - 2*x)", vec![]),
+            ("((x - 2)^2)^(3/4)*H(x - 1)", vec!["(x - 2)^2"]),
         ] {
             let mut found = found(text);
             let mut expected: Vec<String> = expected

@@ -18,11 +18,14 @@ use super::{
 };
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError, Function, Node};
 use crate::numeric::ode::{self, Action, Kept, Looks, Point, StopReason, Trajectory, integrate_through};
-use crate::series::guard::Guards;
+use crate::series::guard::{Guard, Guards};
 use crate::symbol::{Symbol, fresh_stem};
 
 /// No step can be held to less: an estimate of its error is rounding below that.
 const SMALLEST_TOLERANCE: f64 = 1e-14;
+
+/// The part of a state that a rate moves it by, at least, in the time of the run, where the rate is measured by its own size.
+const SMALLEST_MOVE: f64 = 1e-10;
 
 /// Crossings in the same direction that lie closer together, in first steps, are one.
 const SAME_PLACE: f64 = 1e-10;
@@ -95,6 +98,15 @@ impl Units {
         let alone = || (f64::INFINITY, values.iter().map(|value| value.abs()).collect());
         let (reach, mut sizes): (f64, Vec<f64>) =
             taylor::first_step(system, [start, end], values, events).unwrap_or_else(alone);
+        // What moves a state by next to nothing in all the time, as the rounding of a touch does, is no size to measure by.
+        for (right, moved) in system.right.iter().zip(sizes.clone()) {
+            let rate = system.state.iter().position(|state| right.as_symbol() == Some(*state));
+            if let Some(size) = rate.map(|rate| &mut sizes[rate])
+                && *size * (end - start) < SMALLEST_MOVE * moved
+            {
+                *size = 0.0;
+            }
+        }
         let smallest = sizes
             .iter()
             .copied()
@@ -394,7 +406,12 @@ impl Smooth {
                 .map(|expression| CompiledFunction::new(expression, &names));
             compiled.collect::<Result<Vec<_>, EvaluationError>>()
         };
-        let narrow = arguments(&rates, &system.state)
+        let guards: Vec<Guard> = corners
+            .arguments
+            .iter()
+            .map(|argument| Guard::new(argument, &system.numbers))
+            .collect();
+        let narrow = arguments(&rates, &system.state, &guards, &system.numbers)
             .into_iter()
             .map(|Argument { kind, expression }| {
                 Ok::<_, EvaluationError>((kind, CompiledFunction::new(&expression, &names)?))

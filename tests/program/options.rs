@@ -561,6 +561,36 @@ fn a_contact_has_no_second_integrator_and_is_told_so() {
     assert_eq!(output.status.code(), Some(4));
 }
 
+/// A motion that is said not to be trusted is incomplete: exit code 4, and so in JSON and as comma-separated values.
+#[test]
+fn a_motion_that_is_not_to_be_trusted_is_incomplete() {
+    let chaotic = [
+        "simulate",
+        "x'' + 0.25*x' - x + x^3 - 0.3*cos(t) = 0",
+        "--from",
+        "x=1",
+        "--until",
+        "300",
+        "--integrator",
+    ];
+    let asked = |integrator: &str, format: &str| run(&[&chaotic[..], &[integrator, "--format", format]].concat());
+    let output = asked("both", "json");
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(4), "{message}");
+    assert!(message.contains("do not trust this motion"), "{message}");
+    let document: Value = serde_json::from_slice(&output.stdout).expect("a document");
+    assert_eq!(document["complete"], false);
+    assert!(document["difference"].as_f64().expect("a difference") > 1e-6);
+    let table = asked("both", "csv");
+    assert_eq!(table.status.code(), Some(4));
+    assert!(String::from_utf8_lossy(&table.stdout).contains("# incomplete: the two integrators differ"));
+    // One integrator alone says how long its digits hold, and is complete.
+    let alone = asked("taylor", "json");
+    assert_eq!(alone.status.code(), Some(0));
+    let document: Value = serde_json::from_slice(&alone.stdout).expect("a document");
+    assert_eq!(document["complete"], true);
+}
+
 /// What grows beyond all numbers ends where it does, with numbers in every format; the schema has no others.
 #[test]
 fn a_motion_that_leaves_the_range_of_numbers_ends_there() {

@@ -46,7 +46,7 @@ pub struct MotionDocument {
     pub held: Vec<[f64; 2]>,
     /// Why it ends where it does.
     pub stopped: String,
-    /// Whether it was followed as long as asked.
+    /// Whether it was followed as long as asked, its energy is accounted for and the other integrator, where asked for, agrees.
     pub complete: bool,
 }
 
@@ -155,7 +155,7 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
         known_until: report.known_until,
         held: motion.held().collect(),
         stopped: in_words(motion.reason()).to_owned(),
-        complete: motion.is_complete(),
+        complete: report.is_complete(),
     }
 }
 

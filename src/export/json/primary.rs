@@ -43,7 +43,7 @@ pub struct PrimaryDocument {
     pub locked: AloneDocument,
     /// Why the run ended.
     pub stopped: String,
-    /// Whether it was followed as long as asked.
+    /// Whether it was followed as long as asked, and its energy is accounted for.
     pub complete: bool,
 }
 
@@ -278,7 +278,7 @@ pub fn primary(report: &PrimaryReport) -> PrimaryDocument {
         without: alone(&others.without),
         locked: alone(&others.locked),
         stopped: motion.stop.to_string(),
-        complete: motion.is_complete(),
+        complete: report.is_complete(),
     }
 }
 

@@ -471,7 +471,9 @@ impl<S: Sample> Leg<'_, '_, S> {
             let kept = self
                 .looks
                 .kept
-                .and_then(|kept| kept(&|fraction| step.state_at(fraction)));
+                .and_then(|kept| kept(&|fraction| step.state_at(fraction)))
+                // A step that the clock does not notice would be taken over and over.
+                .filter(|kept| kept * step.length > 4.0 * f64::EPSILON * time.abs());
             if let Some(kept) = kept {
                 // The whole step would go past something: not so far, then.
                 match self.solver(scheme, &state, kept * step.length) {

@@ -1,7 +1,7 @@
 //! `lindstedt simulate FILE` of a file with a main mass, `[primary]`.
 
 use lindstedt::Interrupt;
-use lindstedt::export::{json, primary, significant};
+use lindstedt::export::{json, primary};
 use lindstedt::impact::primary::{
     PrimaryParameter, PrimarySettings, PrimaryStop, UnknownPrimaryParameter, simulate_primary, sweep_primary,
 };

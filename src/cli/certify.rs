@@ -8,9 +8,10 @@ use lindstedt::exact::Rational;
 use lindstedt::export::json::{self, CertificateDocument, DampedCertificateDocument};
 use lindstedt::export::printable_in_line;
 use lindstedt::expr::parse_expression;
+use lindstedt::method::with_resonance_at;
 use lindstedt::report::{self, AnyCertificate, CertificateReport};
 use lindstedt::verify::Verdict;
-use lindstedt::{Interrupt, Progress, Solution, Supervision, Values};
+use lindstedt::{Interrupt, Method, Options, Oscillator, Progress, Solution, Supervision, Values, solve};
 use num_traits::Signed as _;
 
 use super::answer::{Answer, no_such};
@@ -72,6 +73,11 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     derive::with_motion(&arguments.question, &[("a certificate", true)])?;
     let (oscillator, values, solution) = derive::solved(&arguments.question)?;
     let values = values.unwrap_or_default();
+    // A proof of a driven motion is of the steady one alone, whose formula is that of slow equations.
+    let solution = match solution.in_time() {
+        Some(_) => steady_formula(&oscillator, &values).unwrap_or(solution),
+        None => solution,
+    };
     derive::needed(&solution, &values)?;
     let refused = |error: &NotCertified| Failure::refused(error, error.help());
     let tolerance = tolerance(&arguments.common);
@@ -117,6 +123,16 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let outcome = printed(&report, &arguments.common)?;
     let partial = validity.is_some_and(|validity| validity.beyond == Beyond::Stopped);
     Ok(Outcome { partial, ..outcome })
+}
+
+/// The formula of the steady motion under a drive; `None` where there is none.
+fn steady_formula(oscillator: &Oscillator, values: &Values) -> Option<Solution> {
+    let options = Options {
+        method: Some(Method::MultipleScales),
+        ..Options::default()
+    };
+    let options = with_resonance_at(oscillator, &options, values).ok()?;
+    solve(oscillator, &options).ok()
 }
 
 /// The proof of a motion that has an amplitude of its own.

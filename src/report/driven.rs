@@ -53,7 +53,10 @@ fn said<'a>(words: &str, left: impl Into<Formula>, right: impl Into<Formula>) ->
 
 /// The motion as a function of time.
 fn motion_in_time<'a>(solution: &'a Solution, response: &Response) -> Vec<Block<'a>> {
-    let heading = format!("Released at rest from {} = A", solution.coordinate());
+    let heading = match solution.equilibrium.is_zero() {
+        true => format!("Released at rest from {} = A", solution.coordinate()),
+        false => "Released at rest at the distance A from the equilibrium".to_owned(),
+    };
     let mut blocks = vec![
         Block::Heading(heading),
         equation(solution.coordinate(), response.motion.clone()),

@@ -734,7 +734,7 @@ fn stick_and_slip_of_several_coordinates_is_that_of_time_stepping() {
         }
         held += motion.held().count();
         // The other integrator finds the same.
-        course.duration = 12.0;
+        course.duration = 6.0;
         let other = course.follow_by(Integrator::RungeKutta).expect("a motion");
         assert!(motion.difference(&other) < 1e-7, "{mass:?} {bounds:?} {belt}");
     }

@@ -284,7 +284,7 @@ fn rise_to_infinity(force: &Force, side: f64, unit: f64) -> Option<f64> {
     const DOUBLINGS: i32 = 1000;
     /// Of the height: a remainder below this is rounding, one below the other is good enough where the force has no digits beyond.
     const NEGLIGIBLE: f64 = 1e-14;
-    const SMALL: f64 = 1e-9;
+    const SMALL: f64 = 1e-8;
     /// A quotient closer to one than this belongs to a potential that grows without end, as a logarithm, or may do so.
     const CONVERGES: f64 = 0.97;
     /// By how much the quotient may still change.

@@ -130,7 +130,7 @@ impl NotCertified {
             Self::NoSteadyMotion => "`derive` with --at lists the steady motions; `response` finds those of a range",
             Self::OffCycle => "leave the amplitude out",
             Self::Law(_) => "without a range it is certified at one amplitude",
-            Self::Motion(NoMotion::NotReal | NoMotion::Numbers(_)) | Self::Formula(_) | Self::Sines => {
+            Self::Motion(NoMotion::Unknown | NoMotion::Numbers(_)) | Self::Formula(_) | Self::Sines => {
                 "--no-formula proves the motion alone: that it exists, and its frequency"
             }
             Self::Start(_) => "give the amplitude as a decimal or a fraction, and an equilibrium that is one",

@@ -189,7 +189,7 @@ pub fn compare(
     let numbers = checked_numbers(first, &at_first)?;
     super::check_digits(oscillator, first, &numbers)?;
     let meant = meant(oscillator, first, &numbers);
-    let (true_motion, reason) = match super::true_motion(oscillator, first, &meant, &numbers) {
+    let (true_motion, reason) = match super::meant_motion(oscillator, first, &meant, &numbers) {
         Ok(motion) => (Some(motion), None),
         Err(error) if error.leaves_the_truth_open() => (None, Some(error)),
         Err(error) => return Err(error.into()),

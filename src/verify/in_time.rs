@@ -166,6 +166,7 @@ pub(super) fn judge(
         judged_on: "motion",
         error_of_omega: None,
         max_deviation: deviation,
+        no_deviation: None,
         residual: Some(followed.residual).filter(|value| value.is_finite()),
         slope: None,
         over_several_wells: false,

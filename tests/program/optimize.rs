@@ -205,7 +205,7 @@ fn a_main_mass_and_its_pendulum_have_the_numbers_of_their_own_motion() {
         );
         let simulated = format!("{fixed}[pendulum]\n{start}\n[run]\nduration = 500\n");
         let file: Problem = simulated.parse().expect("a file");
-        let primary = file.primary_case(false).expect("a main mass");
+        let primary = file.primary_case(&[]).expect("a main mass");
         let motion = simulate_primary(primary.case, &primary.settings).expect("a motion");
         let rest = motion.rest_time().expect("it rests");
         let seconds = Objective::PrimaryRestTime.value(&design).expect("it rests");

@@ -190,7 +190,7 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
     const SHORT: usize = 12;
     /// Whole numbers are written out up to here.
     const WRITTEN_OUT: usize = 21;
-    /// What is longer is no number of anybody's equation.
+    /// The most characters; a longer one is no number of an equation that somebody typed.
     const LONGEST_BITS: u64 = 4_000;
     /// Digits that tell any two doubles apart: more of them are no number that was rounded or typed.
     const DIGITS: usize = 17;

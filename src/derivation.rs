@@ -154,8 +154,9 @@ impl Line {
         }
     }
 
-    /// The same line with another name of the phase in its Fourier series.
+    /// Returns the line with this name of the phase in its Fourier series, and in its words, where `θ` stands for it.
     pub(crate) fn with_phase(mut self, name: Symbol) -> Self {
+        self.words = self.words.replace('θ', name.name());
         for formula in &mut self.equal {
             if let Formula::Waves { phase, .. } = formula {
                 *phase = name;

@@ -170,7 +170,7 @@ pub enum OscillatorError {
         side: char,
         /// The term with the root.
         term: Quotation,
-        /// What to write instead of the root, for a force that pulls back on both sides.
+        /// The force to write instead of the root, for a force that pulls back on both sides.
         odd: String,
         /// For one that is zero where the root has no value, where another term pulls back there.
         zero: Option<String>,
@@ -431,7 +431,7 @@ impl Oscillator {
         Ok(oscillator)
     }
 
-    /// The same equation with other names for the parameters that bear the name of something in an answer, the amplitudes `A` and `a`
+    /// Returns the equation with other names for the parameters that bear the name of something in an answer, the amplitudes `A` and `a`
     /// or the frequency `omega`, and for each of them the name that was typed and the one that is written.
     ///
     /// The `omega` of a drive becomes `Omega`, that of a linear force `omega0`, all others get an index.

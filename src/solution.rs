@@ -588,12 +588,13 @@ impl Solution {
         Some(power * self.precision() * size / value.abs())
     }
 
-    /// How far rounding of the coefficients may move the motion, over the amplitude: its terms cancel far outside of its reach. `None`
-    /// where a value is missing, or the amplitude is zero.
+    /// How far rounding of the coefficients may move the swing about the equilibrium, over the amplitude: the terms of its harmonics cancel
+    /// far outside of its reach. `None` if a value is missing, or the amplitude is zero.
     pub fn rounding_of_motion_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
         let amplitude = value_of(self.amplitude.symbol()).filter(|amplitude| *amplitude != 0.0)?;
         let harmonics = self.displacement.harmonics();
-        let polynomials = harmonics.iter().flat_map(|(_, cosine, sine)| [cosine, sine]);
+        let swing = harmonics.iter().filter(|(harmonic, ..)| *harmonic > 0);
+        let polynomials = swing.flat_map(|(_, cosine, sine)| [cosine, sine]);
         let size = |polynomial: &Polynomial| Some(self.evaluate_with_size(polynomial, value_of).ok()?.1);
         let sizes: Option<Vec<f64>> = polynomials.map(size).collect();
         Some(self.precision() * sizes?.iter().sum::<f64>() / amplitude.abs())

@@ -350,7 +350,7 @@ pub(super) fn renamed(oscillator: &Oscillator) -> Result<(Oscillator, Vec<(Symbo
         .map_err(|error| Failure::advised(&error, error.help()))
 }
 
-/// What is to be said of the names of parameters: those that are written otherwise, and those without a value that look like something
+/// Notes on the names of parameters: those that are written otherwise, and those without a value that look like something
 /// else.
 pub(super) fn notes_on_names(
     oscillator: &Oscillator,

@@ -7,7 +7,7 @@
 //! V(x_e + A) < V(rim),   rim = the unstable equilibrium on either side, where the force ends, or infinity where V levels off
 //! ```
 //!
-//! Where the inertia depends on the position too, the same holds of `U' = M f` with the energy `M x'^2/2 + U`.
+//! For an inertia that depends on the position too, the same holds of `U' = M f` with the energy `M x'^2/2 + U`.
 //!
 //! All lengths are measured by the amplitude asked for, so the units of the equation do not matter.
 
@@ -287,7 +287,7 @@ fn rise_to_infinity(force: &Force, side: f64, unit: f64) -> Option<f64> {
     const SMALL: f64 = 1e-8;
     /// A quotient closer to one than this belongs to a potential that grows without end, as a logarithm, or may do so.
     const CONVERGES: f64 = 0.97;
-    /// By how much the quotient may still change.
+    /// The change of the quotient that still counts as settled.
     const SETTLED: f64 = 1e-4;
     let mut sum = rise(force, side * unit)?;
     let (mut last, mut quotient) = (f64::INFINITY, f64::INFINITY);

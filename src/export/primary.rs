@@ -110,7 +110,13 @@ pub fn sweep_csv(report: &PrimarySweepReport) -> String {
     let mut text = format!("# units: {}\n{}\n", units.join(", "), names.join(","));
     let or_none = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     for (number, (row, units)) in report.rows.iter().zip(report.units).enumerate() {
-        let count = |count: usize| row.is_begun().then(|| count.to_string()).unwrap_or_default();
+        let count = |count: usize| {
+            if row.is_begun() {
+                count.to_string()
+            } else {
+                String::new()
+            }
+        };
         let Others { locked, without } = row.others;
         let mut cells: Vec<String> = report.values(number).iter().map(f64::to_string).collect();
         let amplitude = row.is_begun().then_some(row.amplitude);

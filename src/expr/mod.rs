@@ -243,7 +243,7 @@ impl Expr {
     /// The expression with every number in it changed, exponents included.
     ///
     /// # Errors
-    /// Those of [`Expr::with_children`].
+    /// As for [`Expr::with_children`].
     pub fn with_numbers(&self, change: &dyn Fn(&Rational) -> Rational) -> Result<Self, ExprError> {
         self.fold(|expr, children: &[Self]| match expr.node() {
             Node::Number(number) => Ok(Self::number(change(number))),

@@ -110,7 +110,7 @@ pub enum OptionsError {
     NotPositive {
         /// The key.
         key: &'static str,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
     /// Nothing to watch.

@@ -96,7 +96,7 @@ pub enum DampingError {
     Negative {
         /// Which.
         key: Parameter,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
     /// A restitution that is none.
@@ -119,7 +119,7 @@ pub enum DampingError {
     NotFinite {
         /// Which.
         key: Parameter,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
 }

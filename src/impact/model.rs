@@ -142,7 +142,7 @@ pub enum ModelError {
     NotFinite {
         /// Which.
         parameter: Parameter,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
     /// A parameter below zero.
@@ -150,7 +150,7 @@ pub enum ModelError {
     Negative {
         /// Which.
         parameter: Parameter,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
     /// A stiffness that is negative, or zero beside a barrier.
@@ -165,7 +165,7 @@ pub enum ModelError {
     LostDigits {
         /// Which.
         parameter: Parameter,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
     /// Barriers in the wrong order.

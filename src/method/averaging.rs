@@ -297,9 +297,9 @@ fn of_polynomial(
     ];
     let twice = Expr::from(2) * Expr::from(&omega0);
     let (rate, phase) = (Expr::from(a.derivative()), Expr::from(letters.phase.derivative()));
-    derivation.push(Line::equation(&twice * &rate, &slow.secular_sine).because("what sin(theta) asks for"));
+    derivation.push(Line::equation(&twice * &rate, &slow.secular_sine).because("what sin(θ) asks for"));
     let cosine = &twice * &Expr::from(a) * (&phase - &Expr::from(&omega0));
-    derivation.push(Line::equation(cosine, &slow.secular_cosine).because("what cos(theta) asks for"));
+    derivation.push(Line::equation(cosine, &slow.secular_cosine).because("what cos(θ) asks for"));
     let [mut amplitude_rate, mut phase_rate] = [slow.first[0].clone(), omega0.clone() + slow.first[1].clone()];
     let leading = [Expr::from(&amplitude_rate), Expr::from(&phase_rate)];
     let mut correction = Series::zero(POLYNOMIALS);
@@ -597,8 +597,8 @@ fn by_projections(oscillator: &Oscillator, small: &SmallTerms) -> Result<Average
     let phase_rate = (&omega0 + &Expr::divide(&cosine, &(&twice * &amplitude))?).expand()?;
     let psi = Expr::from(letters.phase.derivative());
     derivation.extend([
-        Line::equation(&twice * &Expr::from(a.derivative()), sine).because("what sin(theta) asks for"),
-        Line::equation(&twice * &amplitude * (&psi - &omega0), cosine).because("what cos(theta) asks for"),
+        Line::equation(&twice * &Expr::from(a.derivative()), sine).because("what sin(θ) asks for"),
+        Line::equation(&twice * &amplitude * (&psi - &omega0), cosine).because("what cos(θ) asks for"),
     ]);
     let steady = transient::steady(a, &amplitude_rate);
     Ok(Averaged {

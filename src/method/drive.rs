@@ -1,4 +1,4 @@
-//! What drives a motion: waves in time whose frequencies are multiples of one, alone or beside powers of the coordinate and its velocity.
+//! Drives of a motion: waves in time whose frequencies are multiples of one, alone or beside powers of the coordinate and its velocity.
 //!
 //! ```text
 //! F cos(Omega t + phi), F sin(Omega t), h x cos(2 Omega t), and sums of them

@@ -75,7 +75,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             let integral = work(Expr::divide(&Expr::one(), &quarter)?);
             solution.derivation = vec![
                 Line::equation(&squared * &quarter, work(Expr::one()))
-                    .because("kinetic energy of A*cos(theta) at theta = pi/4, from the work of the force"),
+                    .because("kinetic energy of A*cos(θ) at θ = pi/4, from the work of the force"),
                 Line::equation(squared.clone(), integral.clone()),
             ];
             solution.law = Law::Quadrature(vec![Line::equation(squared, integral)]);
@@ -97,7 +97,7 @@ fn derivation(oscillator: &Oscillator, potential: &Expr) -> Result<Vec<Line>, Re
     Ok(vec![
         Line::equation(fresh("V", &oscillator.names()), potential).because("potential energy"),
         Line::equation(kinetic + at(&eighth)?, at(&amplitude)?)
-            .because("kinetic and potential energy of A*cos(theta) at theta = pi/4, and at theta = 0"),
+            .because("kinetic and potential energy of A*cos(θ) at θ = pi/4, and at θ = 0"),
     ])
 }
 

@@ -190,7 +190,7 @@ impl Energy<'_> {
     }
 }
 
-/// What is known of a force.
+/// Properties of a force.
 struct Known {
     law: Frequency,
     /// `x(t)` from rest at `A`, about the equilibrium.

@@ -78,7 +78,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     };
     solution.derivation = vec![
         Line::equation(fresh("V", &names), potential).because("potential energy"),
-        Line::equal([mean_name.into(), integral, mean.into()]).because("its mean over A*cos(theta)"),
+        Line::equal([mean_name.into(), integral, mean.into()]).because("its mean over A*cos(θ)"),
         Line::equal([Expr::symbol("omega").integer_power(2)?.into(), slope, law.into()])
             .because("the mean Hamiltonian is stationary"),
     ];

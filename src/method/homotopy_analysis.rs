@@ -313,7 +313,7 @@ fn secular_lines(name: Symbol, residual: &FourierSeries<Polynomials>, unknown: E
     let secular = residual.cosine(1).constant_term();
     vec![
         Line::equation(name, residual.clone()),
-        Line::equation(&secular, Expr::zero()).because(format!("no cos(theta) in {name}")),
+        Line::equation(&secular, Expr::zero()).because(format!("no cos(θ) in {name}")),
         Line::equation(unknown, value),
     ]
 }

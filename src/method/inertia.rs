@@ -351,7 +351,7 @@ fn energy_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Opti
             let kinetic = &quarter * &squared * &inertia;
             solution
                 .derivation
-                .push(Line::equation(kinetic, rise).because("the energy of A*cos(theta) at theta = pi/4"));
+                .push(Line::equation(kinetic, rise).because("the energy of A*cos(θ) at θ = pi/4"));
             solution.derivation.push(Line::equation(squared, &law));
             set_law(&mut solution, &law)?;
         }
@@ -364,8 +364,8 @@ fn energy_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Opti
                 None => there.into(),
             };
             let words = match &moving.mass {
-                Some(_) => "the energy of A*cos(theta) at theta = pi/4".to_owned(),
-                None => format!("the energy of A*cos(theta) at theta = pi/4, {there} the value of {name} there"),
+                Some(_) => "the energy of A*cos(θ) at θ = pi/4".to_owned(),
+                None => format!("the energy of A*cos(θ) at θ = pi/4, {there} the value of {name} there"),
             };
             let work = Formula::Integral {
                 factor: Expr::one(),
@@ -420,7 +420,7 @@ fn hamiltonian(moving: &VariableMass, oscillator: &Oscillator, options: &Options
                 by: "A".into(),
             };
             solution.derivation.extend([
-                Line::equation(k, kinetic).because("mean kinetic energy of A*cos(theta) over omega^2"),
+                Line::equation(k, kinetic).because("mean kinetic energy of A*cos(θ) over omega^2"),
                 Line::equation(p, potential).because("mean potential energy"),
                 Line::equal([slope(k, squared.clone()), slope(p, Expr::one())]).because("stationary in A"),
                 Line::equation(squared, &law),
@@ -455,7 +455,7 @@ fn hamiltonian(moving: &VariableMass, oscillator: &Oscillator, options: &Options
                 over_half(Expr::one(), mass * force * cosine),
             ]);
             solution.derivation.push(line.because(format!(
-                "{} times the equation has no cos(theta) along A*cos(theta)",
+                "{} times the equation has no cos(θ) along A*cos(θ)",
                 mass_name(oscillator)
             )));
             solution.law = Law::Quadrature(solution.derivation.clone());
@@ -575,7 +575,7 @@ fn one_balance(solution: &mut Solution, balance: &Polynomial) -> Result<(), Refu
         &Expr::divide(&still, &amplitude)?.expand()?,
         &Expr::divide(&inertia, &amplitude)?.expand()?,
     )?;
-    let condition = Line::equation(balance, Expr::zero()).because("the cos(theta) part");
+    let condition = Line::equation(balance, Expr::zero()).because("the cos(θ) part");
     solution.derivation.extend([condition, Line::equation(squared, &law)]);
     set_law(solution, &law)
 }

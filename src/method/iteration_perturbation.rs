@@ -222,7 +222,7 @@ impl Pass {
                         .because("the secular term left out: omega follows from the last pass"),
                 );
             }
-            None => lines.push(Line::equation(&secular, zero).because("no cos(theta) on the right")),
+            None => lines.push(Line::equation(&secular, zero).because("no cos(θ) on the right")),
         }
         Ok(lines)
     }
@@ -251,7 +251,7 @@ fn frozen_function(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Line>, R
             Expr::zero().into(),
         ])
         .because(format!("the factor frozen at {start}")),
-        Line::equation(squared, first_projection(oscillator, force)?).because("no cos(theta) remains"),
+        Line::equation(squared, first_projection(oscillator, force)?).because("no cos(θ) remains"),
     ])
 }
 

@@ -624,6 +624,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             .into_iter()
             .map(|line| line.with_phase(phase))
             .collect(),
+        law: solution.law.with_phase(phase),
         ..solution
     })
 }

@@ -202,9 +202,7 @@ pub(super) fn integral_law(oscillator: &Oscillator, force: &Expr, solution: &Sol
     let squared = Expr::symbol("omega").integer_power(2)?;
     let mut equal = vec![squared.into(), first_projection(oscillator, force)?];
     equal.extend(law_of(solution).map(Formula::from));
-    Ok(vec![
-        Line::equal(equal).because("no cos(theta) remains in the equation"),
-    ])
+    Ok(vec![Line::equal(equal).because("no cos(θ) remains in the equation")])
 }
 
 /// omega^2 of an answer that has it as a polynomial or in closed form.

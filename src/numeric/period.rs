@@ -211,7 +211,7 @@ pub fn swing_with_cuts(
     }
 }
 
-/// What ended a motion that cannot be followed past a state: a place where the force has no value, or that it has left for good.
+/// The reason why a motion cannot be followed past a state: a place where the force has no value, or that it has left for good.
 fn ending(acceleration: &dyn Fn(f64, f64, f64) -> f64, equilibrium: f64, start: f64, state: State) -> PeriodError {
     /// So many amplitudes away nothing is swinging.
     const FAR: f64 = 1e6;

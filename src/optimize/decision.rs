@@ -126,7 +126,7 @@ const STREAM: u64 = 1 << 40;
 const STEPS: i32 = 40;
 
 impl Decision {
-    /// What decides this design, judged by integration, the best of its box.
+    /// The sensitivities of this design, the best of its box, judged by integration.
     pub(super) fn of(question: &Question, space: &Space, design: &Design) -> Self {
         let best: &[f64] = &design.point;
         let probe = Probe {

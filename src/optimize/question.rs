@@ -153,7 +153,7 @@ pub enum OptimizeError {
     NoFeasible {
         /// The constraints in words.
         constraints: String,
-        /// What a search for the constraints alone found, in words.
+        /// The result of a search for the constraints alone, in words.
         nearest: String,
         /// Whether that keeps them.
         exists: bool,

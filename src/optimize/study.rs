@@ -38,7 +38,7 @@ pub struct SearchRun {
     pub generations: usize,
     /// Designs that were followed.
     pub evaluations: usize,
-    /// Those of them that were integrated: they have no closed form, or would be the best if they keep the constraints.
+    /// The number of designs that were integrated: they have no closed form, or would be the best if they keep the constraints.
     pub integrated: usize,
     /// Why it ended.
     pub stop: Stop,

@@ -158,7 +158,7 @@ fn rounded<'a>(solution: &Solution, name: Symbol, polynomial: &Polynomial, digit
     let sum = Sum::new(polynomial, true, |monomial| solution.order_of(monomial));
     Block::Law {
         left: Expr::from(name),
-        right: sum.to_digits(digits),
+        right: sum.with_digits(digits),
     }
 }
 

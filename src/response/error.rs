@@ -73,7 +73,7 @@ pub enum ResponseError {
     Count {
         /// What is counted.
         what: &'static str,
-        /// What was given.
+        /// The value given.
         given: usize,
         /// The most.
         most: usize,

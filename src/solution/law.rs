@@ -187,6 +187,15 @@ impl Law {
         }
     }
 
+    /// The law with this name of the phase in its lines.
+    #[must_use]
+    pub(crate) fn with_phase(self, name: Symbol) -> Self {
+        match self {
+            Self::Quadrature(lines) => Self::Quadrature(lines.into_iter().map(|line| line.with_phase(name)).collect()),
+            other => other,
+        }
+    }
+
     /// Whether a symbol stands in it; integrals are taken along the motion, so the amplitude stands in each.
     pub fn contains(&self, symbol: Symbol) -> bool {
         let equations = self.system().into_iter().flat_map(|system| &system.equations);

@@ -90,7 +90,7 @@ pub enum Note {
     },
     /// The series of omega^2 has no singularity, as far as its coefficients show.
     ConvergesEverywhere {
-        /// What the series runs in.
+        /// The variable of the series.
         variable: Monomial,
         /// The highest power of it that was looked at.
         highest: usize,
@@ -467,7 +467,7 @@ impl fmt::Display for Note {
             Self::Cut(cut) => cut.fmt(formatter),
             Self::MotionAtLeadingOrder { small } => write!(
                 formatter,
-                "the motion is A*cos(theta): its part of the size of {small}, drift and harmonics, is left out"
+                "the motion is A times the cosine of its phase: its part of the size of {small}, drift and harmonics, is left out"
             ),
             Self::ConvergenceControl(hbar) => write!(
                 formatter,
@@ -516,8 +516,8 @@ impl fmt::Display for Note {
             Self::Poles(poles) => poles.fmt(formatter),
             Self::Followed(root) => root.fmt(formatter),
             Self::EllipticFunctions => formatter.write_str(
-                "sn(u, m), cn(u, m) and dn(u, m) are the elliptic functions of Jacobi of the parameter m = k^2, k being the modulus; K(m) is \
-                 their quarter period",
+                "the elliptic functions of Jacobi have an argument and a parameter, the square of the modulus; a quarter of their period \
+                 is the complete integral of the first kind",
             ),
             Self::Exact(by) => by.fmt(formatter),
             Self::Stability(cycle) => write!(formatter, "the limit cycle {}", cycle.stability()),
@@ -680,8 +680,8 @@ fn driven(
 impl fmt::Display for Instant {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let at = match self {
-            Self::EighthOfPeriod => "theta = pi/4",
-            Self::CosineSquared => "cos(theta)^2 = 3/4",
+            Self::EighthOfPeriod => "an eighth of the period",
+            Self::CosineSquared => "a twelfth of the period",
         };
         write!(
             formatter,

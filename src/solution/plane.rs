@@ -87,8 +87,9 @@ impl PlanePolynomial {
         // Horner's scheme, in one coordinate after the other.
         for k in 0..degree {
             for i in (k..degree).rev() {
-                for j in 0..=degree {
-                    table[i][j] += u * table[i + 1][j];
+                let (lower, higher) = table.split_at_mut(i + 1);
+                for (coefficient, next) in lower[i].iter_mut().zip(&higher[0]) {
+                    *coefficient += u * next;
                 }
             }
         }

@@ -32,7 +32,7 @@ impl Sum {
 
     /// The sum with so many digits of its rounded numbers.
     #[must_use]
-    pub(crate) fn to_digits(self, digits: usize) -> Self {
+    pub(crate) fn with_digits(self, digits: usize) -> Self {
         Self { digits, ..self }
     }
 

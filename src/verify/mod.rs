@@ -493,7 +493,7 @@ fn in_convention_of(
     Ok(Some((values, in_words)))
 }
 
-/// What cancellation costs of the digits of the verdict, where the formula is summed far out.
+/// The loss of digits of the verdict by cancellation, where the formula is summed far out.
 fn cancellation(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,

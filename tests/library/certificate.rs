@@ -534,7 +534,7 @@ fn a_proved_range_ends_where_the_error_passes_the_tolerance() {
     }
 }
 
-/// Where the error hardly grows with the amplitude the proved range still ends where the tolerance is passed: omega^2 = 1 + 3 A^2/4 for x + x^3 is off by
+/// If the error hardly grows with the amplitude, the proved range still ends where the tolerance is passed: omega^2 = 1 + 3 A^2/4 for x + x^3 is off by
 /// 2.2 % at most.
 #[test]
 fn a_proved_range_reaches_its_end_where_the_error_is_flat() {

@@ -437,7 +437,7 @@ fn a_force_that_is_a_difference_near_the_touch_keeps_its_digits() {
         (1..=n).map(f64::from).map(f64::recip).product()
     }
     fn alternating(n: u32) -> f64 {
-        if n % 2 == 0 { 1.0 } else { -1.0 }
+        if n.is_multiple_of(2) { 1.0 } else { -1.0 }
     }
     fn binomial(n: u32) -> f64 {
         (0..n).map(|j| (0.5 - f64::from(j)) / f64::from(j + 1)).product()

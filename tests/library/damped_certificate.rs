@@ -10,7 +10,7 @@ use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::solution::AmplitudeConvention;
 use lindstedt::verify::motions;
 use lindstedt::{Method, Options, Oscillator, Solution, Symbol, Values, solve};
-use num_traits::{Signed, Zero};
+use num_traits::{One, Signed, Zero};
 use proptest::prelude::*;
 
 const VAN_DER_POL: &str = "x'' - mu*(1 - x^2)*x' + x = 0";
@@ -361,6 +361,13 @@ fn each_inequality_is_checked() {
     assert!(matches!(
         reason(&|certificate| {
             certificate.cosines = vec![];
+            certificate.sines = vec![];
+        }),
+        CheckError::Malformed(_)
+    ));
+    assert!(matches!(
+        reason(&|certificate| {
+            certificate.cosines = vec![Integer::zero(), Integer::one()];
             certificate.sines = vec![];
         }),
         CheckError::NotProved(_)

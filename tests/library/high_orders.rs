@@ -62,7 +62,7 @@ fn conservative_motions_are_singular_on_their_separatrix() {
     assert!(holds(&radius, &pi), "{radius:?}");
 }
 
-/// Where omega^2 itself has a zero the motion takes for ever, and the series converges beyond. Kepler's radial motion has
+/// If omega^2 itself has a zero, the motion takes for ever, and the series converges beyond. Kepler's radial motion has
 /// `omega^2 = (1 + 2 A)^3/(1 + A)^6`, by its third law; in a field `1 - 1/x^2` the motion meets its singular place at A = -1 as well.
 #[test]
 fn zeros_of_the_frequency_are_no_singularities() {

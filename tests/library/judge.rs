@@ -742,7 +742,7 @@ fn a_law_that_is_off_near_rest_has_a_range_further_out() {
     }
 }
 
-/// Where the parameter that is small by default leaves a series nothing to expand in, the table has the series in the amplitude.
+/// If the parameter that is small by default leaves a series nothing to expand in, the table has the series in the amplitude.
 #[test]
 fn a_table_expands_in_the_amplitude_where_no_parameter_is_small() {
     for (equation, at) in [

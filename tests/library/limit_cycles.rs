@@ -480,8 +480,9 @@ fn balanced_amplitude(share: &dyn Fn(f64) -> f64, edges: &[f64]) -> f64 {
 #[test]
 fn damping_that_jumps_with_the_position_has_its_limit_cycle() {
     type Share = fn(f64) -> f64;
+    type Case<'a> = (&'a str, &'a [(&'a str, &'a str)], Share, f64);
     let jump: Share = |x| if x.abs() < 1.0 { 1.0 } else { -1.0 };
-    let cases: [(&str, &[(&str, &str)], Share, f64); 5] = [
+    let cases: [Case; 5] = [
         ("x'' - mu*sgn(1 - x^2)*x' + x = 0", &[("mu", "1/10")], jump, 1.0),
         ("x'' - mu*sgn(1 - abs(x))*x' + x = 0", &[("mu", "1/10")], jump, 1.0),
         ("x'' - mu*(1 - 2*H(x^2 - 1))*x' + x = 0", &[("mu", "1/10")], jump, 1.0),

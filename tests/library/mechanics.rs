@@ -589,7 +589,7 @@ fn followed(course: Course) -> lindstedt::trajectory::Trajectory {
     motion
 }
 
-/// What friction holds while the rest goes on, in closed form: one of two blocks, two blocks on each other, a block on a belt.
+/// Parts of a system that friction holds while the rest goes on, in closed form: one of two blocks, two blocks on each other, a block on a belt.
 #[test]
 fn friction_holds_one_of_several_coordinates() {
     // The spring between them, 1/2 times y, is too weak for the friction of 2/5: y'' + 3/2 y = 0.
@@ -788,7 +788,7 @@ fn corners_of_mechanisms() {
     assert_eq!(equilibria(&duffing).unwrap()[0].places, [Place::At(Expr::zero())]);
 }
 
-/// What changes with the time other than by sines and cosines has no modes; what a drive adds is left out of inertia, damping and
+/// A mechanism that changes with the time other than by sines and cosines has no modes; what a drive adds is left out of inertia, damping and
 /// stiffness alike.
 #[test]
 fn a_mechanism_that_changes_with_the_time_has_no_modes() {

@@ -374,13 +374,14 @@ fn a_coordinate_may_be_called_theta() {
         let text = |solution: &Solution| text::steps(solution) + &text::solution(solution, None, 0.01);
         // First the phase, then the coordinate: the other order would make them one.
         let expected = words_replaced(&text(&plain), "theta", "phi");
+        let expected = words_replaced(&expected, "dx", "dtheta_");
         let expected = words_replaced(&expected, "x", "theta");
-        assert_eq!(
-            words_replaced(&text(&named), "theta0", "x0"),
-            words_replaced(&expected, "theta0", "x0"),
-            "{}",
-            method.name()
-        );
+        let iterates = (0..4).fold(expected, |text, k| {
+            words_replaced(&text, &format!("x{k}"), &format!("theta{k}"))
+        });
+        let expected = words_replaced(&iterates, "dtheta", "dphi");
+        let expected = words_replaced(&expected, "dtheta_", "dtheta");
+        assert_eq!(text(&named), expected, "{}", method.name());
     }
 }
 

@@ -485,7 +485,7 @@ fn a_range_ends_where_it_ends_for_a_smaller_motion() {
     }
 }
 
-/// What a refusal says of a motion that is released there.
+/// The refusal of a motion that is released there.
 fn refused(equation: &str, amplitude: &str) -> String {
     let oscillator = Oscillator::parse(equation).unwrap();
     let solution = solve(&oscillator, &Options::default()).unwrap();

@@ -501,7 +501,8 @@ fn corners_at_the_same_place_are_all_switched() {
 /// A loose tolerance makes a motion less exact, not shorter, and takes few steps.
 #[test]
 fn a_loose_tolerance_is_followed_to_the_end() {
-    let motions: [(&[&str; 2], [f64; 2], fn(f64) -> f64); 3] = [
+    type Motion<'a> = (&'a [&'a str; 2], [f64; 2], fn(f64) -> f64);
+    let motions: [Motion; 3] = [
         (&["v", "-x"], [0.0, 1.0], f64::sin),
         (&["v", "-x + 3*x/4/(1 + x^2/1e9)"], [1.0, 0.0], |t| (0.5 * t).cos()),
         (&["1", "3*x^2"], [0.0, 0.0], |t| t),

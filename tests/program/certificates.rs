@@ -161,7 +161,7 @@ fn by_python(python: &Path, file: &Path) -> Option<[Rational; 2]> {
     Some([fraction(0), fraction(1)])
 }
 
-/// What the library proves of a document of any kind: omega, or the amplitude.
+/// The numbers that the library proves of a document of any kind: omega, or the amplitude.
 fn by_library(document: &Value) -> Result<Enclosure, String> {
     let unread = |error: serde_json::Error| error.to_string();
     let proved = match document["ode"].as_str() {
@@ -288,7 +288,7 @@ fn a_second_program_in_python_proves_the_same() {
     });
 }
 
-/// The same cycle half a period later, with an inverse that belongs to it, and as far off the formula as that is.
+/// The cycle half a period later, with an inverse that belongs to it, and as far off the formula as that is.
 fn half_a_period_later(document: &mut Value) {
     let turned = |text: &Value| match text.as_str().unwrap_or("0") {
         "0" => json!("0"),
@@ -306,7 +306,7 @@ fn half_a_period_later(document: &mut Value) {
     document["formula"]["phase_error"] = json!(["1", "10"]);
 }
 
-/// What a file says never steers a terminal, and stands under "Proved" only where it is what was proved.
+/// The text of a file never steers a terminal, and stands under "Proved" only where it is what was proved.
 #[test]
 fn words_of_a_file_are_words() {
     let folder = folder("words");
@@ -364,7 +364,7 @@ fn words_of_a_file_are_words() {
     );
 }
 
-/// Where the formula has no real value the motion is proved, and it is said that no formula is judged.
+/// If the formula has no real value, the motion is proved, and it is said that no formula is judged.
 #[test]
 fn a_motion_is_proved_without_its_formula() {
     let folder = folder("alone");

@@ -436,7 +436,7 @@ fn the_frequency_is_the_same_with_and_without_the_motion() {
     }
 }
 
-/// What a command prints whose time is up before its end: the warning says of how much it is a part. A busy machine is given more time,
+/// The output of a command whose time is up before its end: the warning says of how much it is a part. A busy machine is given more time,
 /// until there is enough.
 fn stopped_early(arguments: &[&str], of: &str, is_enough: fn(&Value) -> bool) -> Value {
     for doublings in 0..12 {

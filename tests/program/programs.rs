@@ -339,7 +339,7 @@ def show(name, *values):\n    try:\n        print(repr(float(case[name](*values)
             if !is_here("cc") {
                 return None;
             }
-            const NAMES: [&str; 11] = [
+            const NAMES: [&str; 15] = [
                 "PI",
                 "angular_frequency",
                 "displacement",
@@ -351,6 +351,10 @@ def show(name, *values):\n    try:\n        print(repr(float(case[name](*values)
                 "bessel_i0",
                 "bessel_i1",
                 "elliptic_k",
+                "jacobi_functions",
+                "jacobi_sn",
+                "jacobi_cn",
+                "jacobi_dn",
             ];
             driver += "#include <math.h>\n#include <stdio.h>\n";
             for k in 0..cases.len() {
@@ -455,7 +459,14 @@ fn programs_give_the_numbers_of_the_library() {
 fn rounding_noise_is_no_harmonic_of_a_program() {
     for language in ["python", "c", "rust"] {
         let text = output(&[
-            "derive", "pendulum", "--method", "exact", "--at", "A=1", "--format", language,
+            "derive",
+            "x'' + sinh(x) = 0",
+            "--method",
+            "exact",
+            "--at",
+            "A=1",
+            "--format",
+            language,
         ]);
         let has = |k: &str| {
             text.contains(&format!("({k}*theta)"))

@@ -394,9 +394,10 @@ fn extreme_numbers_end_in_time() {
             "At t = 100000:",
         ),
         (
+            // The sine of such an angle has no digits: refused, with nothing on standard output.
             "[pendulum]\nstart = -1e300\n[damping]\nalpha = 1.1\nfriction = \"arctangent\"",
-            4,
-            "no finite value after t = 2",
+            1,
+            "",
         ),
         (
             "[damping]\nzeta = 1e30\nalpha = 1e8",

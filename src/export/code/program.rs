@@ -485,7 +485,7 @@ fn turned_angle(names: &Names) -> Expr {
     Expr::from(names.omega) * Expr::from(names.time) + (Expr::one() - Expr::from(names.sign)) * half
 }
 
-/// What stands before `cos(theta)` beside the first harmonic, for a negative amplitude: half a period later the even harmonics have kept
+/// The coefficient of `cos(theta)` beside the first harmonic, for a negative amplitude: half a period later the even harmonics have kept
 /// their signs, and the motion begins at its amplitude with it.
 fn missing_at_start(solution: &Solution, names: &Names, harmonics: &[(usize, Polynomial, Polynomial)]) -> Expr {
     let half = Expr::number(Rational::new(1.into(), 2.into()));

@@ -363,7 +363,7 @@ impl SineSeries {
 /// all points of the rule, is seen by a shorter one.
 struct Running<F> {
     integrand: F,
-    /// What the integral is a part of: errors count relative to it.
+    /// The size of the whole of which the integral is a part: errors count relative to it.
     whole: f64,
     /// Places in rising order, and the integral up to each.
     known: RefCell<Vec<(f64, f64)>>,
@@ -448,9 +448,11 @@ fn deepest_root(force: impl Fn(f64) -> f64, speed: f64) -> Result<f64, ContactEr
         deepest = find_root(again, low, high).unwrap_or(deepest);
     }
     // The edge of where the force is defined is no turning point.
-    match work(&force, deepest * (1.0 + 1e-9), energy) {
-        Ok(_) => Ok(deepest),
-        Err(_) => Err(never(deepest)),
+    let beyond = deepest * (1.0 + 1e-9);
+    match work(&force, beyond, energy) {
+        // No node of a rule need lie between the edge and there.
+        Ok(_) if force(beyond * beyond).is_finite() => Ok(deepest),
+        _ => Err(never(deepest)),
     }
 }
 

@@ -188,7 +188,7 @@ pub enum PrimaryError {
         name: &'static str,
         /// What it may be.
         wanted: &'static str,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
     /// The numbers of the pendulum.

@@ -61,7 +61,7 @@ pub enum AxisError {
     /// Neither linear nor logarithmic.
     #[error("`{name}` is no spacing: after the count stands `log` for equal ratios, or `lin`{}", meant(.nearest))]
     Spacing {
-        /// What was given.
+        /// The value given.
         name: String,
         /// What was meant, perhaps.
         nearest: Option<&'static str>,

@@ -410,10 +410,9 @@ impl<'a> Question<'a> {
         let turned = &(Expr::from(i64::from(self.p)) * theta) + &Expr::from(self.phase);
         lines.push(Line::equation(self.drive.angle(), turned).because("the drive turns with"));
         lines.push(
-            Line::equation(self.a.derivative(), amplitude_rate.clone())
-                .because("what sin(theta) asks for, with the drive"),
+            Line::equation(self.a.derivative(), amplitude_rate.clone()).because("what sin(θ) asks for, with the drive"),
         );
-        lines.push(Line::equation(self.phase.derivative(), phase_rate.clone()).because("what cos(theta) asks for"));
+        lines.push(Line::equation(self.phase.derivative(), phase_rate.clone()).because("what cos(θ) asks for"));
         let closed = response.closed.as_ref().map(|closed| closed.relation.clone());
         if let Some(relation) = response.relation.as_ref().map(Expr::from).or(closed) {
             let steady = "steady where both vanish; cos^2 + sin^2 = 1 eliminates the phase";

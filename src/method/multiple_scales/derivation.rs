@@ -50,17 +50,17 @@ pub(super) fn derivation(
         Some(marker) => marker.to_string(),
         None => a.to_string(),
     };
-    let wave = format!("exp({i}*theta)");
+    let wave = format!("exp({i}*θ)");
     let turns = match response {
-        None => format!("theta turns at the rate {}", Expr::from(linear_frequency)),
-        Some(_) => "theta turns in step with the drive; what that forces far from resonance is added".to_owned(),
+        None => format!("θ turns at the rate {}", Expr::from(linear_frequency)),
+        Some(_) => "θ turns in step with the drive; what that forces far from resonance is added".to_owned(),
     };
     let mut lines = vec![
         Line::words(format!(
             "the motion is {orders}0 + {orders}1 + {orders}2 + ..., each order with its power of {small} and a slow time of its own"
         )),
         Line::words(format!(
-            "{orders}0 = {own}*{wave} + {conjugate}*exp(-{i}*theta), {conjugate} the conjugate of {own}; {turns}"
+            "{orders}0 = {own}*{wave} + {conjugate}*exp(-{i}*θ), {conjugate} the conjugate of {own}; {turns}"
         )),
         Line::words(format!(
             "{times}1, {times}2, ... are the rates of {own} on the slow times"
@@ -85,14 +85,14 @@ pub(super) fn derivation(
             let motion = motion.map(POLYNOMIALS, |coefficient, _| unmarked(coefficient));
             lines.push(
                 Line::equation(Symbol::new(&format!("{orders}{k}")), motion)
-                    .because(format!("the motion, with {own} = {a}/2 in theta")),
+                    .because(format!("the motion, with {own} = {a}/2 in θ")),
             );
         }
     }
     let [amplitude_rate, phase_rate] = rates;
     let phase = names.phase;
     let polar = match response {
-        None => format!("{own} is {a}/2 turned by the phase {phase} without theta"),
+        None => format!("{own} is {a}/2 turned by the phase {phase} without θ"),
         Some(_) => format!("{own} is {a}/2 turned back by the phase {phase}"),
     };
     lines.push(Line::equation(a.derivative(), amplitude_rate).because(polar));

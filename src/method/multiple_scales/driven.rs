@@ -196,7 +196,7 @@ impl Asked<'_> {
                 let first = self.force().or(self.drive.terms.first());
                 let below = first.map_or(1, |driven| driven.multiple);
                 match self.force() {
-                    None if below % 2 == 0 => vec![(1, below / 2), (1, below)],
+                    None if below.is_multiple_of(2) => vec![(1, below / 2), (1, below)],
                     None => vec![(2, below), (1, below)],
                     Some(_) => vec![(1, below)],
                 }

@@ -40,7 +40,7 @@ pub enum PeriodError {
         start: f64,
         /// The equilibrium.
         equilibrium: f64,
-        /// Where motions are periodic, in words.
+        /// The range of periodic motions, in words.
         range: Option<String>,
     },
     /// The motion turns before it reaches the equilibrium.
@@ -53,7 +53,7 @@ pub enum PeriodError {
         start: f64,
         /// The equilibrium.
         equilibrium: f64,
-        /// Where motions are periodic, in words.
+        /// The range of periodic motions, in words.
         range: Option<String>,
     },
     /// Too small a motion to pass the unstable equilibrium that it is asked about.
@@ -78,7 +78,7 @@ pub enum PeriodError {
         start: f64,
         /// How far the search went.
         searched: f64,
-        /// Where motions are periodic, in words.
+        /// The range of periodic motions, in words.
         range: Option<String>,
     },
     /// A speed that grows faster than the force at rest could make it grow.
@@ -94,9 +94,9 @@ pub enum PeriodError {
     /// Released farther out than motions come back from, where what becomes of this one has no range of its own.
     #[error("{error}; motions are {range}")]
     OutsideWell {
-        /// What becomes of this one.
+        /// The fate of this motion.
         error: Box<PeriodError>,
-        /// Where they are periodic, in words.
+        /// The range of periodic motions, in words.
         range: String,
     },
     /// On the separatrix, to the digits of the numbers.

@@ -158,7 +158,7 @@ const LINES: [(&str, &str, &str); 95] = [
     ("[genetic] bits", "bits = 8", "[genetic]\ncoding = \"bits\"\n"),
     (
         "[genetic] penalty",
-        "[genetic]\npenalty = \"feasible-first\"",
+        "[genetic]\npenalty = \"death\"",
         "[limits]\nmax_impacts = 12\n",
     ),
     (

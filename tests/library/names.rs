@@ -376,7 +376,7 @@ fn a_coordinate_may_be_called_theta() {
         let expected = words_replaced(&text(&plain), "theta", "phi");
         let expected = words_replaced(&expected, "dx", "dtheta_");
         let expected = words_replaced(&expected, "x", "theta");
-        let iterates = (0..4).fold(expected, |text, k| {
+        let iterates = (0..8).fold(expected, |text, k| {
             words_replaced(&text, &format!("x{k}"), &format!("theta{k}"))
         });
         let expected = words_replaced(&iterates, "dtheta", "dphi");

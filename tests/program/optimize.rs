@@ -215,7 +215,12 @@ fn a_main_mass_and_its_pendulum_have_the_numbers_of_their_own_motion() {
         );
         let until = motion.pendulum_rest_time().expect("it rests");
         let impacts: Vec<_> = motion.impacts.iter().filter(|impact| impact.entry < until).collect();
-        assert_eq!(design.impacts, impacts.len(), "{start}: until {until}, {:?}", motion.impacts.last());
+        assert_eq!(
+            design.impacts,
+            impacts.len(),
+            "{start}: until {until}, {:?}",
+            motion.impacts.last()
+        );
         assert!(!impacts.is_empty(), "{start}");
         // The force by looking at the states.
         let force = impacts.iter().flat_map(|impact| {

@@ -294,7 +294,7 @@ pub struct Dissipation {
     pub coefficient: Option<f64>,
     /// The speed at which a given restitution is stated, in units of L omega.
     pub at_speed: Option<f64>,
-    /// The same in m/s, where it is stated so.
+    /// The speed in m/s, if the file states it so.
     pub at_speed_si: Option<f64>,
     /// The speed of the first touch without damping, in units of L omega; nothing where no barrier is reached.
     pub touch_speed: Option<f64>,

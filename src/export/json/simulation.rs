@@ -165,7 +165,7 @@ pub struct ContactDissipation {
     pub stated_restitution: Option<f64>,
     /// The speed at which that is stated, in radians per unit of time; null where another form is given.
     pub at_speed: Option<f64>,
-    /// The same in m/s. Left out where it is not stated so.
+    /// The speed in m/s; left out if the file states no such speed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at_speed_si: Option<f64>,
 }

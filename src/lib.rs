@@ -59,54 +59,24 @@
 
 #![warn(missing_docs)]
 
-mod interrupt;
-mod parallel;
+#[doc(inline)]
+pub use lindstedt_dynamics::{mechanics, system};
+#[doc(inline)]
+pub use lindstedt_expr::{exact, expr};
+#[doc(inline)]
+pub use lindstedt_impact::{impact, optimize};
+#[doc(inline)]
+pub use lindstedt_numeric::{genetic, numeric};
+#[doc(inline)]
+pub use lindstedt_oscillator::{method, oscillator, solution};
+#[doc(inline)]
+pub use lindstedt_series::series;
+#[doc(inline)]
+pub use lindstedt_verify::{certificate, hill, response, trajectory, verify};
 
-pub mod numeric;
-mod spelling;
-mod symbol;
-
-pub mod genetic;
-
-pub mod exact;
-
-mod decimal;
-
-pub mod expr;
-
-mod values;
-
-pub mod series;
-
-pub mod system;
-
-pub mod mechanics;
-
-mod derivation;
-
-pub mod solution;
-
-pub mod oscillator;
-
-mod conservative;
-
-pub mod trajectory;
-
-pub mod hill;
-
-mod equilibrium;
-
-pub mod method;
-
-pub mod verify;
-
-pub mod certificate;
-
-pub mod response;
-
-pub mod impact;
-
-pub mod optimize;
+use lindstedt_expr::{decimal, spelling, symbol, values};
+use lindstedt_numeric::interrupt;
+use lindstedt_oscillator::derivation;
 
 #[cfg(feature = "toml")]
 pub mod problem;

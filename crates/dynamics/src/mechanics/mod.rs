@@ -1,0 +1,244 @@
+//! From energies to equations of motion: Lagrange's equations of the second kind for any number of coordinates.
+//!
+//! ```text
+//! d/dt dT/dq_i' - dT/dq_i + dV/dq_i + dD/dq_i' = Q_i        T(q, q', t), V(q, t), D(q, q'), Q_i(q, q', t)
+//! M q'' + C q' + K q = 0   near a place of rest;   det(lambda^2 M + lambda C + K) = 0
+//! ```
+//!
+//! (L. Meirovitch, *Fundamentals of Vibrations*, 2001, sections 6.4 and 7.2; J. W. Strutt, Lord Rayleigh, *The Theory of Sound*,
+//! section 81, for D.) In: a [`Mechanism`], energies as expressions with `q'` for the velocity of `q`. Out: its [`Equations`],
+//! the places where it can rest and how it swings there, and, where its parameters have units, a check of every term and the
+//! dimensionless [`Groups`] on which the motion depends.
+//!
+//! ```
+//! use lindstedt::mechanics::Mechanism;
+//!
+//! let pendulum = Mechanism::parse(&["x"], "m*L^2*x'^2/2", "m*g*L*(1 - cos(x))")?;
+//! assert_eq!(pendulum.equations()?.to_string(), "x'' + g*sin(x)/L = 0");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod combination;
+pub mod dimension;
+mod equilibrium;
+mod groups;
+mod lagrange;
+pub mod linear;
+mod modes;
+pub mod paper;
+mod rates;
+mod study;
+mod trigonometry;
+
+use std::collections::BTreeMap;
+
+use thiserror::Error;
+
+use crate::expr::{Expr, ExprError, ParseError, parse_expression};
+use crate::symbol::Symbol;
+
+pub use combination::Combination;
+pub use dimension::{Dimension, UnitError};
+pub use equilibrium::{Drive, Place, Rest, equilibria};
+pub use groups::{Group, Groups, NoGroups};
+pub use lagrange::Equations;
+pub use modes::{Mode, Modes, NoModes};
+pub use rates::Rates;
+pub use study::{MechanismQuestion, MechanismStudy, RestStudy, StudyError, study};
+
+/// The most coordinates that a mechanism may have: its matrices are written out as formulas.
+pub const MOST_COORDINATES: usize = 8;
+
+/// A mechanism: its coordinates, its energies, and what acts on it beside them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mechanism {
+    /// The generalised coordinates, in the order in which their equations come.
+    pub coordinates: Vec<Symbol>,
+    /// T, the kinetic energy, in coordinates, velocities and time.
+    pub kinetic: Expr,
+    /// V, the potential energy, in coordinates and time.
+    pub potential: Expr,
+    /// D, Rayleigh's dissipation function: `c*x'^2/2` for a dashpot, `F*abs(x')` for dry friction.
+    pub dissipation: Expr,
+    /// Q, the generalised force on each coordinate that has one; it stands on the right side.
+    pub forces: BTreeMap<Symbol, Expr>,
+}
+
+/// Why there are no equations of motion.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum MechanicsError {
+    /// An energy or a force that cannot be read.
+    #[error("the {part}: {error}")]
+    Parse {
+        /// Which.
+        part: String,
+        /// What is wrong with it.
+        error: Box<ParseError>,
+    },
+    /// A step of algebra failed.
+    #[error(transparent)]
+    Expression(#[from] ExprError),
+    /// No coordinates, or more than can be written out.
+    #[error("a mechanism has 1 to {MOST_COORDINATES} coordinates, not {0}")]
+    CoordinateCount(usize),
+    /// The same coordinate twice.
+    #[error("the coordinate `{0}` is listed twice")]
+    Twice(Symbol),
+    /// A name that cannot be a coordinate.
+    #[error("`{0}` cannot be a coordinate: take a name of letters and digits that is neither `t` nor `pi`")]
+    Name(String),
+    /// A velocity or an acceleration where none belongs.
+    #[error("the {part} contains `{name}`: {why}")]
+    Derivative {
+        /// Of which part.
+        part: String,
+        /// The symbol.
+        name: Symbol,
+        /// What belongs there.
+        why: &'static str,
+    },
+    /// A coordinate that nothing accelerates.
+    #[error("the kinetic energy does not contain `{0}'`: without inertia `{0}` has no equation of motion")]
+    NoInertia(Symbol),
+    /// The accelerations do not follow.
+    #[error("the kinetic energy `{0}` does not determine every acceleration: its mass matrix is singular")]
+    Singular(Expr),
+    /// An energy that jumps.
+    #[error(
+        "the {part} jumps with `{jump}`: the force of a jump is no function; let the term vanish where it begins, such as \
+         k*(x - a)^2*H(x - a)"
+    )]
+    Jump {
+        /// Which.
+        part: String,
+        /// The step or sign.
+        jump: Expr,
+    },
+    /// A force on something that is no coordinate.
+    #[error("there is a force on `{0}`, which is no coordinate")]
+    ForceOnNothing(Symbol),
+}
+
+impl Mechanism {
+    /// A mechanism of these energies alone, as texts.
+    ///
+    /// # Errors
+    /// What cannot be read; [`Mechanism::equations`] judges what can.
+    pub fn parse(coordinates: &[&str], kinetic: &str, potential: &str) -> Result<Self, MechanicsError> {
+        let read = |part: &str, text: &str| {
+            parse_expression(text).map_err(|error| MechanicsError::Parse {
+                part: part.to_owned(),
+                error: Box::new(error),
+            })
+        };
+        Ok(Self {
+            coordinates: coordinates.iter().map(|name| Symbol::new(name)).collect(),
+            kinetic: read("kinetic energy", kinetic)?,
+            potential: read("potential energy", potential)?,
+            dissipation: Expr::zero(),
+            forces: BTreeMap::new(),
+        })
+    }
+
+    /// The equations of motion.
+    ///
+    /// # Errors
+    /// [`MechanicsError`] names the part and the symbol.
+    ///
+    /// ```
+    /// use lindstedt::mechanics::Mechanism;
+    ///
+    /// let cart = Mechanism::parse(
+    ///     &["s", "x"],
+    ///     "M*s'^2/2 + m*((s' + L*x'*cos(x))^2 + (L*x'*sin(x))^2)/2",
+    ///     "-m*g*L*cos(x)",
+    /// )?;
+    /// let equations = cart.equations()?;
+    /// assert_eq!(equations.to_string(), "s''*(M + m) + L*m*x''*cos(x) - L*m*x'^2*sin(x) = 0\ns''*cos(x) + L*x'' + g*sin(x) = 0");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn equations(&self) -> Result<Equations, MechanicsError> {
+        self.check()?;
+        let (own, combinations) = combination::combined(self)?;
+        let equations = lagrange::equations(&own)?;
+        Ok(equations.written_out(combinations)?)
+    }
+
+    /// The same with something else in the place of every part.
+    fn mapped(&self, change: impl Fn(&Expr) -> Result<Expr, ExprError>) -> Result<Self, ExprError> {
+        let force = |(on, force): (&Symbol, &Expr)| Ok((*on, change(force)?));
+        Ok(Self {
+            coordinates: self.coordinates.clone(),
+            kinetic: change(&self.kinetic)?,
+            potential: change(&self.potential)?,
+            dissipation: change(&self.dissipation)?,
+            forces: self.forces.iter().map(force).collect::<Result<_, ExprError>>()?,
+        })
+    }
+
+    /// Everything that is written down, with what it is called.
+    pub(crate) fn parts(&self) -> impl Iterator<Item = (String, &Expr)> {
+        let energies = [
+            ("kinetic energy", &self.kinetic),
+            ("potential energy", &self.potential),
+            ("dissipation", &self.dissipation),
+        ];
+        let energies = energies.into_iter().map(|(name, part)| (name.to_owned(), part));
+        let forces = self.forces.iter();
+        energies.chain(forces.map(|(on, force)| (format!("force on {on}"), force)))
+    }
+
+    /// The names that are neither coordinates, their derivatives nor time, in alphabetical order.
+    pub fn parameters(&self) -> Vec<Symbol> {
+        let names: std::collections::BTreeSet<Symbol> = self.parts().flat_map(|(_, part)| part.symbols()).collect();
+        let own = |name: &Symbol| self.coordinates.contains(&name.coordinate()) || name.name() == "t";
+        names.into_iter().filter(|name| !own(name)).collect()
+    }
+
+    /// Refuses what no equation follows from.
+    fn check(&self) -> Result<(), MechanicsError> {
+        let count = self.coordinates.len();
+        if count == 0 || count > MOST_COORDINATES {
+            return Err(MechanicsError::CoordinateCount(count));
+        }
+        for (index, coordinate) in self.coordinates.iter().enumerate() {
+            let readable = parse_expression(coordinate.name()).is_ok_and(|read| read.as_symbol() == Some(*coordinate));
+            if !readable || coordinate.primes() > 0 || coordinate.name() == "t" {
+                return Err(MechanicsError::Name(coordinate.name().to_owned()));
+            }
+            if self.coordinates[..index].contains(coordinate) {
+                return Err(MechanicsError::Twice(*coordinate));
+            }
+        }
+        if let Some(on) = self.forces.keys().find(|on| !self.coordinates.contains(on)) {
+            return Err(MechanicsError::ForceOnNothing(*on));
+        }
+        for (part, expression) in self.parts() {
+            for name in expression.symbols() {
+                let why = match name.primes() {
+                    0 => continue,
+                    _ if !self.coordinates.contains(&name.coordinate()) => "no coordinate has that name",
+                    1 if part == "potential energy" => {
+                        "a potential depends on coordinates alone; what depends on velocities belongs to the kinetic energy, the \
+                         dissipation or the forces"
+                    }
+                    1 => continue,
+                    _ => "energies and forces depend on coordinates, velocities and time alone",
+                };
+                return Err(MechanicsError::Derivative { part, name, why });
+            }
+        }
+        for (part, energy) in self.parts().take(2) {
+            if let Some(jump) = lagrange::jump(energy, &self.coordinates) {
+                return Err(MechanicsError::Jump { part, jump });
+            }
+        }
+        for coordinate in &self.coordinates {
+            if !self.kinetic.contains(coordinate.derivative()) {
+                return Err(MechanicsError::NoInertia(*coordinate));
+            }
+        }
+        Ok(())
+    }
+}

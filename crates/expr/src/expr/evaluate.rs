@@ -1,0 +1,667 @@
+//! Numbers out of expressions.
+//!
+//! In comes an expression and values of its symbols, out goes an `f64`. [`Expr::evaluate`] is for a single value and
+//! refuses what is not finite; [`CompiledFunction`] is for integrators, which call one expression millions of times.
+//!
+//! A product in which a factor built from `H` and `sgn` alone is zero is zero, whatever the other factors are:
+//! `(x - xc)^(3/2)*H(x - xc)` is 0 on the near side of the barrier, where the power has no real value.
+
+use std::collections::{BTreeMap, HashMap};
+
+use num_integer::Integer as _;
+use num_traits::{One, Signed, ToPrimitive};
+
+use super::function::Value;
+use super::{Expr, Function, Node};
+use crate::exact::rational::{Integer, Rational, to_f64};
+use crate::symbol::Symbol;
+
+/// Why an expression has no number.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EvaluationError {
+    /// A symbol without a value.
+    #[error("`{0}` has no value here")]
+    MissingSymbol(Symbol),
+    /// No real or no finite value at this point.
+    #[error("`{expression}` has no finite value at {point}")]
+    Undefined {
+        /// The expression, shortened.
+        expression: String,
+        /// The values of its symbols.
+        point: String,
+    },
+}
+
+impl Expr {
+    /// The value at this point, rounded at each operation. Values of symbols that do not occur are ignored.
+    ///
+    /// # Errors
+    /// A symbol has no value, or the result is not a finite number.
+    pub fn evaluate(&self, values: &BTreeMap<Symbol, f64>) -> Result<f64, EvaluationError> {
+        let symbols: Vec<Symbol> = self.symbols().into_iter().collect();
+        let arguments = symbols
+            .iter()
+            .map(|symbol| {
+                values
+                    .get(symbol)
+                    .copied()
+                    .ok_or(EvaluationError::MissingSymbol(*symbol))
+            })
+            .collect::<Result<Vec<f64>, _>>()?;
+        let value = CompiledFunction::new(self, &symbols)?.call(&arguments);
+        if value.is_finite() {
+            return Ok(value);
+        }
+        let point: Vec<String> = symbols
+            .iter()
+            .zip(&arguments)
+            .map(|(name, value)| format!("{name} = {value}"))
+            .collect();
+        Err(EvaluationError::Undefined {
+            expression: super::print::in_message(self),
+            point: if point.is_empty() {
+                "any point".into()
+            } else {
+                point.join(", ")
+            },
+        })
+    }
+}
+
+/// An expression as a straight list of floating-point operations, each equal subexpression computed once.
+///
+/// A call costs one operation per distinct node; small whole powers are multiplications and `u^(3/2)` is `u*sqrt(u)`.
+/// Nothing is allocated unless the list has more than 64 values.
+///
+/// ```
+/// use lindstedt::expr::{CompiledFunction, parse_expression};
+/// let force = parse_expression("sin(x) + gamma*(x - xc)^1.5*H(x - xc)")?;
+/// let force = CompiledFunction::new(&force, &["x".into(), "xc".into(), "gamma".into()])?;
+/// assert_eq!(force.call(&[0.25, 1.0, 1e6]), 0.25_f64.sin());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct CompiledFunction {
+    argument_count: usize,
+    constants: Vec<f64>,
+    instructions: Vec<Instruction>,
+    result: usize,
+}
+
+/// Operands are places in one row of values: arguments, constants, then the result of each instruction in turn.
+#[derive(Clone, Copy, Debug)]
+enum Instruction {
+    Add(usize, usize),
+    Subtract(usize, usize),
+    Multiply(usize, usize),
+    Divide(usize, usize),
+    /// Zero where the first is zero, otherwise the product.
+    Gate(usize, usize),
+    IntegerPower(usize, u32),
+    SquareRoot(usize),
+    /// The real root: base, exponent, and whether a minus of the base survives.
+    OddRoot(usize, usize, bool),
+    Power(usize, usize),
+    Unary(fn(f64) -> f64, usize),
+    Binary(fn(f64, f64) -> f64, usize, usize),
+}
+
+impl CompiledFunction {
+    /// Translates the expression; `call` will take the values of these symbols in this order.
+    ///
+    /// # Errors
+    /// A symbol of the expression is not among the arguments.
+    pub fn new(expr: &Expr, arguments: &[Symbol]) -> Result<Self, EvaluationError> {
+        let mut compiler = Compiler {
+            arguments,
+            known: HashMap::new(),
+            sizes: HashMap::new(),
+            constants: Vec::new(),
+            code: Vec::new(),
+        };
+        let result = expr.fold(|node, children: &[Slot]| compiler.node(node, children))?;
+        Ok(compiler.finish(result))
+    }
+
+    /// The value at these arguments: NaN where the expression has no real value, infinite at a pole, and NaN if the
+    /// number of arguments is not that of the symbols given to [`CompiledFunction::new`].
+    pub fn call(&self, arguments: &[f64]) -> f64 {
+        // Most forces are short: clearing more places than they need is a fifth of a call.
+        const SHORT: usize = 16;
+        const LONG: usize = 64;
+        let size = self.argument_count + self.constants.len() + self.instructions.len();
+        if arguments.len() != self.argument_count {
+            return f64::NAN;
+        }
+        if size <= SHORT {
+            self.run(arguments, &mut [0.0; SHORT])
+        } else if size <= LONG {
+            self.run(arguments, &mut [0.0; LONG])
+        } else {
+            self.run(arguments, &mut vec![0.0; size])
+        }
+    }
+
+    fn run(&self, arguments: &[f64], values: &mut [f64]) -> f64 {
+        let constants_end = arguments.len() + self.constants.len();
+        values[..arguments.len()].copy_from_slice(arguments);
+        values[arguments.len()..constants_end].copy_from_slice(&self.constants);
+        for (offset, instruction) in self.instructions.iter().enumerate() {
+            values[constants_end + offset] = match *instruction {
+                Instruction::Add(a, b) => values[a] + values[b],
+                Instruction::Subtract(a, b) => values[a] - values[b],
+                Instruction::Multiply(a, b) => values[a] * values[b],
+                Instruction::Divide(a, b) => values[a] / values[b],
+                Instruction::Gate(gate, _) if values[gate] == 0.0 => 0.0,
+                Instruction::Gate(gate, a) => values[gate] * values[a],
+                Instruction::IntegerPower(a, exponent) => integer_power(values[a], exponent),
+                Instruction::SquareRoot(a) => values[a].sqrt(),
+                Instruction::OddRoot(a, exponent, odd) => {
+                    let size = values[a].abs().powf(values[exponent]);
+                    if odd && values[a] < 0.0 { -size } else { size }
+                }
+                Instruction::Power(a, exponent) => values[a].powf(values[exponent]),
+                Instruction::Unary(function, a) => function(values[a]),
+                Instruction::Binary(function, a, b) => function(values[a], values[b]),
+            };
+        }
+        values[self.result]
+    }
+}
+
+fn integer_power(base: f64, exponent: u32) -> f64 {
+    let (mut result, mut square, mut left) = (1.0, base, exponent);
+    while left > 1 {
+        if left % 2 == 1 {
+            result *= square;
+        }
+        square *= square;
+        left /= 2;
+    }
+    result * square
+}
+
+/// Where a value will stand, before it is known how many constants there are.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Slot {
+    Argument(usize),
+    Constant(usize),
+    Result(usize),
+}
+
+enum Operation {
+    Pair(fn(usize, usize) -> Instruction, Slot, Slot),
+    IntegerPower(Slot, u32),
+    SquareRoot(Slot),
+    OddRoot(Slot, Slot, bool),
+    Unary(fn(f64) -> f64, Slot),
+    Binary(fn(f64, f64) -> f64, Slot, Slot),
+}
+
+struct Compiler<'a> {
+    arguments: &'a [Symbol],
+    /// Equal subexpressions share one slot.
+    known: HashMap<Expr, Slot>,
+    /// The [sizes](Compiler::size) of all of them.
+    sizes: HashMap<Expr, i64>,
+    constants: Vec<f64>,
+    code: Vec<Operation>,
+}
+
+impl Compiler<'_> {
+    fn node(&mut self, expr: &Expr, children: &[Slot]) -> Result<Slot, EvaluationError> {
+        if let Some(slot) = self.known.get(expr) {
+            return Ok(*slot);
+        }
+        let slot = match (expr.node(), children) {
+            (Node::Number(value), _) => self.constant(to_f64(value)),
+            (Node::Pi, _) => self.constant(std::f64::consts::PI),
+            (Node::Symbol(symbol), _) => {
+                let place = self.arguments.iter().position(|argument| argument == symbol);
+                Slot::Argument(place.ok_or(EvaluationError::MissingSymbol(*symbol))?)
+            }
+            (Node::Sum(terms), _) => self.sum(terms, children),
+            (Node::Product(coefficient, factors), _) => self.product(coefficient, factors, children),
+            (Node::Power(base, exponent), _) if self.shift(base, exponent.as_number()).is_some() => {
+                self.product(&Rational::one(), std::slice::from_ref(expr), children)
+            }
+            (Node::Power(_, exponent), [base, exponent_slot]) => match exponent.as_number() {
+                Some(number) if number.is_negative() => {
+                    let positive = self.power(*base, &-number);
+                    let one = self.constant(1.0);
+                    self.emit(Operation::Pair(Instruction::Divide, one, positive))
+                }
+                Some(number) => self.power(*base, number),
+                None => self.emit(Operation::Pair(Instruction::Power, *base, *exponent_slot)),
+            },
+            (Node::Function(function, _), [first, ..]) => {
+                self.function(*function, *first, children.get(1).copied().unwrap_or(*first))
+            }
+            (Node::Power(..) | Node::Function(..), _) => self.constant(f64::NAN),
+        };
+        self.known.insert(expr.clone(), slot);
+        let size = self.size(expr);
+        self.sizes.insert(expr.clone(), size);
+        Ok(slot)
+    }
+
+    /// By how many bits the numbers in an expression make it large, those of the sums in it included.
+    fn size(&self, expr: &Expr) -> i64 {
+        let of = |part: &Expr| self.sizes.get(part).copied().unwrap_or(0);
+        match expr.node() {
+            Node::Number(number) => bits(number),
+            Node::Product(coefficient, factors) => {
+                let factors = factors.iter().map(of);
+                factors.fold(bits(coefficient), i64::saturating_add)
+            }
+            Node::Sum(terms) => terms.iter().map(of).max().unwrap_or(0),
+            Node::Power(base, exponent) => {
+                let exponent = exponent.as_number().map_or(0.0, to_f64);
+                (of(base) as f64 * exponent) as i64
+            }
+            _ => 0,
+        }
+    }
+
+    /// The shift of a sum whose numbers are so large that a few of them in a product, or what makes up for them before it, are beyond
+    /// double precision; none for other bases and exponents.
+    fn shift(&self, base: &Expr, exponent: Option<&Rational>) -> Option<Shift> {
+        const LONG: u64 = 200;
+        /// What is larger is no number of anybody's equation, and beyond double precision whatever stands before it.
+        const LONGEST: u64 = 100_000;
+        let size = match base.node() {
+            Node::Sum(_) => u64::try_from(self.sizes.get(base).copied()?).ok()?,
+            _ => return None,
+        };
+        let exponent = exponent?;
+        let (numerator, denominator) = (exponent.numer().to_i32()?, exponent.denom().to_u32()?);
+        if !(LONG..=LONGEST).contains(&size) {
+            return None;
+        }
+        // The root of the divisor is to be a power of two as well.
+        let root_bits = size.div_ceil(u64::from(denominator));
+        Some(Shift {
+            bits: root_bits * u64::from(denominator),
+            made_up: Rational::from_integer(Integer::one() << root_bits as usize).pow(numerator),
+        })
+    }
+
+    fn sum(&mut self, terms: &[Expr], slots: &[Slot]) -> Slot {
+        let mut total: Option<Slot> = None;
+        for (term, slot) in terms.iter().zip(slots) {
+            total = Some(match total {
+                None => *slot,
+                Some(total) => match term.node() {
+                    Node::Product(coefficient, factors) if (-coefficient).is_one() => {
+                        // The product without its minus is compiled afresh; what it shares is known already.
+                        let positive = self.positive_product(factors);
+                        self.emit(Operation::Pair(Instruction::Subtract, total, positive))
+                    }
+                    _ => self.emit(Operation::Pair(Instruction::Add, total, *slot)),
+                },
+            });
+        }
+        total.unwrap_or_else(|| self.constant(0.0))
+    }
+
+    fn positive_product(&mut self, factors: &[Expr]) -> Slot {
+        let slots: Vec<Slot> = factors
+            .iter()
+            .filter_map(|factor| self.known.get(factor).copied())
+            .collect();
+        self.product(&Rational::one(), factors, &slots)
+    }
+
+    fn product(&mut self, coefficient: &Rational, factors: &[Expr], slots: &[Slot]) -> Slot {
+        let (mut above, mut below, mut gate): (Option<Slot>, Option<Slot>, Option<Slot>) = (None, None, None);
+        // Sums whose numbers are beyond double precision enter divided by a power of two, which is made up for at once.
+        let mut coefficient = coefficient.clone();
+        let mut places: Vec<(Slot, Option<Slot>)> = Vec::with_capacity(slots.len());
+        for (factor, slot) in factors.iter().zip(slots) {
+            let (base, exponent) = match factor.node() {
+                Node::Power(base, exponent) => (base, exponent.as_number().cloned()),
+                _ => (factor, Some(Rational::one())),
+            };
+            places.push(match (self.shift(base, exponent.as_ref()), exponent) {
+                (Some(shift), Some(exponent)) => {
+                    let sum = self.scaled_sum(base, shift.bits);
+                    coefficient *= shift.made_up;
+                    let slot = match exponent.is_positive() {
+                        true => self.power(sum, &exponent),
+                        false => *slot,
+                    };
+                    (slot, Some(sum))
+                }
+                _ => (*slot, self.known.get(base).copied()),
+            });
+        }
+        if !coefficient.is_one() {
+            above = Some(self.constant(to_f64(&coefficient)));
+        }
+        for (factor, (slot, base)) in factors.iter().zip(&places) {
+            match factor.node() {
+                _ if is_gate(factor) => gate = Some(self.times(gate, *slot)),
+                Node::Power(_, exponent) => {
+                    let reciprocal = exponent.as_number().filter(|number| number.is_negative());
+                    match (reciprocal, base) {
+                        (Some(number), Some(base)) => {
+                            let positive = self.power(*base, &-number);
+                            below = Some(self.times(below, positive));
+                        }
+                        _ => above = Some(self.times(above, *slot)),
+                    }
+                }
+                _ => above = Some(self.times(above, *slot)),
+            }
+        }
+        let mut result = above;
+        if let Some(below) = below {
+            let above = above.unwrap_or_else(|| self.constant(1.0));
+            result = Some(self.emit(Operation::Pair(Instruction::Divide, above, below)));
+        }
+        match (gate, result) {
+            (Some(gate), Some(result)) => self.emit(Operation::Pair(Instruction::Gate, gate, result)),
+            (gate, result) => gate.or(result).unwrap_or_else(|| self.constant(1.0)),
+        }
+    }
+
+    /// A sum over `2^bits`.
+    fn scaled_sum(&mut self, sum: &Expr, bits: u64) -> Slot {
+        let unit = Rational::new(Integer::one(), Integer::one() << bits as usize);
+        let mut total: Option<Slot> = None;
+        for term in sum.terms() {
+            let (coefficient, factors) = term.factors();
+            let slots: Vec<Slot> = factors
+                .iter()
+                .filter_map(|factor| self.known.get(factor).copied())
+                .collect();
+            let slot = self.product(&(coefficient * &unit), factors, &slots);
+            total = Some(match total {
+                None => slot,
+                Some(total) => self.emit(Operation::Pair(Instruction::Add, total, slot)),
+            });
+        }
+        total.unwrap_or_else(|| self.constant(0.0))
+    }
+
+    fn times(&mut self, product: Option<Slot>, factor: Slot) -> Slot {
+        match product {
+            None => factor,
+            Some(product) => self.emit(Operation::Pair(Instruction::Multiply, product, factor)),
+        }
+    }
+
+    /// A positive exact exponent.
+    fn power(&mut self, base: Slot, exponent: &Rational) -> Slot {
+        // Beyond this a chain of multiplications is no better than the library's power.
+        const LARGEST_CHAIN: u32 = 64;
+        let numerator = exponent
+            .numer()
+            .to_u32()
+            .filter(|numerator| *numerator <= LARGEST_CHAIN);
+        match (numerator, exponent.denom().to_u32()) {
+            (Some(1), Some(1)) => base,
+            (Some(numerator), Some(1)) => self.emit(Operation::IntegerPower(base, numerator)),
+            (Some(1), Some(2)) => self.emit(Operation::SquareRoot(base)),
+            (Some(numerator), Some(2)) => {
+                let root = self.emit(Operation::SquareRoot(base));
+                let whole = match numerator / 2 {
+                    1 => base,
+                    half => self.emit(Operation::IntegerPower(base, half)),
+                };
+                self.emit(Operation::Pair(Instruction::Multiply, whole, root))
+            }
+            (Some(1), Some(3)) => self.emit(Operation::Unary(f64::cbrt, base)),
+            (_, Some(denominator)) if denominator > 1 && denominator.is_odd() => {
+                let value = self.constant(to_f64(exponent));
+                self.emit(Operation::OddRoot(base, value, exponent.numer().is_odd()))
+            }
+            _ => {
+                let value = self.constant(to_f64(exponent));
+                self.emit(Operation::Pair(Instruction::Power, base, value))
+            }
+        }
+    }
+
+    fn function(&mut self, function: Function, first: Slot, second: Slot) -> Slot {
+        match function.value_function() {
+            Value::One(value) => self.emit(Operation::Unary(value, first)),
+            Value::Two(value) => self.emit(Operation::Binary(value, first, second)),
+        }
+    }
+
+    fn constant(&mut self, value: f64) -> Slot {
+        let place = self
+            .constants
+            .iter()
+            .position(|known| known.to_bits() == value.to_bits());
+        Slot::Constant(place.unwrap_or_else(|| {
+            self.constants.push(value);
+            self.constants.len() - 1
+        }))
+    }
+
+    fn emit(&mut self, operation: Operation) -> Slot {
+        self.code.push(operation);
+        Slot::Result(self.code.len() - 1)
+    }
+
+    /// Leaves out what nothing uses, such as the reciprocals that became divisions, and numbers the rest.
+    fn finish(self, result: Slot) -> CompiledFunction {
+        let mut constant_used = vec![false; self.constants.len()];
+        let mut result_used = vec![false; self.code.len()];
+        let mut mark = |slot: Slot, results: &mut [bool]| match slot {
+            Slot::Argument(_) => {}
+            Slot::Constant(place) => constant_used[place] = true,
+            Slot::Result(place) => results[place] = true,
+        };
+        mark(result, &mut result_used);
+        for (place, operation) in self.code.iter().enumerate().rev() {
+            if result_used[place] {
+                for slot in operation.operands().into_iter().flatten() {
+                    mark(slot, &mut result_used);
+                }
+            }
+        }
+        let argument_count = self.arguments.len();
+        let (constant_places, constants_end) = number(&constant_used, argument_count);
+        let (result_places, _) = number(&result_used, constants_end);
+        let place = |slot: Slot| match slot {
+            Slot::Argument(index) => index,
+            Slot::Constant(index) => constant_places[index],
+            Slot::Result(index) => result_places[index],
+        };
+        CompiledFunction {
+            argument_count,
+            constants: kept(self.constants, &constant_used).collect(),
+            instructions: kept(self.code, &result_used)
+                .map(|operation| operation.resolve(place))
+                .collect(),
+            result: place(result),
+        }
+    }
+}
+
+/// The bits of a number before the point, of a small one those before its first digit, negative.
+fn bits(number: &Rational) -> i64 {
+    number.numer().bits() as i64 - number.denom().bits() as i64 + 1
+}
+
+/// By what a sum is divided before it is raised to a power, and what makes up for it after.
+struct Shift {
+    /// The divisor is `2^bits`.
+    bits: u64,
+    /// `2^(bits*exponent)`, a fraction.
+    made_up: Rational,
+}
+
+/// A factor whose zero covers a whole interval, on which the other factors need no value.
+fn is_gate(factor: &Expr) -> bool {
+    factor.is_stepwise() && (factor.contains_function(Function::Step) || factor.contains_function(Function::Sign))
+}
+
+/// Consecutive places from `start` for what is used, and the first place after them.
+fn number(used: &[bool], start: usize) -> (Vec<usize>, usize) {
+    let mut next = start;
+    let places = used
+        .iter()
+        .map(|used| {
+            let place = next;
+            next += usize::from(*used);
+            place
+        })
+        .collect();
+    (places, next)
+}
+
+fn kept<T>(items: Vec<T>, used: &[bool]) -> impl Iterator<Item = T> {
+    items
+        .into_iter()
+        .zip(used)
+        .filter(|(_, used)| **used)
+        .map(|(item, _)| item)
+}
+
+impl Operation {
+    fn operands(&self) -> [Option<Slot>; 2] {
+        match *self {
+            Self::Pair(_, a, b) | Self::OddRoot(a, b, _) | Self::Binary(_, a, b) => [Some(a), Some(b)],
+            Self::IntegerPower(a, _) | Self::SquareRoot(a) | Self::Unary(_, a) => [Some(a), None],
+        }
+    }
+
+    fn resolve(self, place: impl Fn(Slot) -> usize) -> Instruction {
+        match self {
+            Self::Pair(make, a, b) => make(place(a), place(b)),
+            Self::IntegerPower(a, exponent) => Instruction::IntegerPower(place(a), exponent),
+            Self::SquareRoot(a) => Instruction::SquareRoot(place(a)),
+            Self::OddRoot(a, exponent, odd) => Instruction::OddRoot(place(a), place(exponent), odd),
+            Self::Unary(function, a) => Instruction::Unary(function, place(a)),
+            Self::Binary(function, a, b) => Instruction::Binary(function, place(a), place(b)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::parse_expression;
+
+    fn at(text: &str, x: f64) -> Result<f64, EvaluationError> {
+        parse_expression(text)
+            .unwrap()
+            .evaluate(&BTreeMap::from([(Symbol::new("x"), x), (Symbol::new("k"), 4.0)]))
+    }
+
+    #[test]
+    fn values() {
+        for (text, x, expected) in [
+            ("x^3 - 2*x + 1", 3.0, 22.0),
+            ("x^(1/3)", -8.0, -2.0),
+            ("x^(2/3)", -8.0, 4.0),
+            ("x^(-1/3)", -8.0, -0.5),
+            ("x^(3/5)", -32.0, -8.0),
+            ("x^1.5", 4.0, 8.0),
+            ("x^(7/2)", 4.0, 128.0),
+            ("x^(-5/2)", 4.0, 1.0 / 32.0),
+            ("x^(5/4)", 16.0, 32.0),
+            ("x^-3", -2.0, -0.125),
+            ("x^65", -1.0, -1.0),
+            ("x^0.5*k", 9.0, 12.0),
+            ("k^x", 0.5, 2.0),
+            ("sqrt(x^2)", -3.0, 3.0),
+            ("2*pi", 0.0, std::f64::consts::TAU),
+            ("k/x - x/k", 2.0, 1.5),
+            ("1/(x*(1 + x))", 1.0, 0.5),
+            ("x - k", 1.0, -3.0),
+            ("1 - x*k - k*x^2", 1.0, -7.0),
+            ("sgn(x) + H(x) + abs(x)", -2.0, 1.0),
+            ("sgn(x) + H(x)", 0.0, 0.0),
+            ("max(x, 1) + min(x, 1)", 3.0, 4.0),
+            ("atan(x) - asin(x) + acos(x)", 0.0, std::f64::consts::FRAC_PI_2),
+        ] {
+            let value = at(text, x).unwrap();
+            assert!(
+                (value - expected).abs() <= 4.0 * f64::EPSILON * expected.abs(),
+                "{text} at {x}: {value}"
+            );
+        }
+    }
+
+    /// On the near side of the barrier the contact force is exactly zero although its power has no value there.
+    #[test]
+    fn a_step_that_is_zero_wins() {
+        for text in [
+            "(x - 1)^1.5*H(x - 1)",
+            "k*(x - 1)^1.5*H(x - 1)*log(x)",
+            "sqrt(-x)*(1 - H(x))*H(x - 1)",
+            "log(x)*(1 + sgn(x))",
+            "H(x - 1)/sqrt(x)",
+            "H(x)^2*sqrt(x)",
+        ] {
+            assert_eq!(at(text, -0.5), Ok(0.0), "{text}");
+        }
+        assert_eq!(at("(x - 1)^1.5*H(x - 1)", 5.0), Ok(8.0));
+        // A factor that merely happens to be zero does not hide a pole.
+        assert!(at("x/sin(x)", 0.0).is_err());
+    }
+
+    #[test]
+    fn what_has_no_value_is_refused() {
+        for (text, x) in [
+            ("sqrt(x)", -1.0),
+            ("1/x", 0.0),
+            ("log(x)", 0.0),
+            ("x^x", -0.5),
+            ("exp(x)", 1000.0),
+        ] {
+            assert!(matches!(at(text, x), Err(EvaluationError::Undefined { .. })), "{text}");
+        }
+        assert_eq!(at("x + y", 1.0), Err(EvaluationError::MissingSymbol(Symbol::new("y"))));
+        assert_eq!(
+            at("sqrt(x)", -1.0).unwrap_err().to_string(),
+            "`sqrt(x)` has no finite value at x = -1"
+        );
+        let x = parse_expression("x").unwrap();
+        assert!(CompiledFunction::new(&x, &[]).is_err());
+        assert!(CompiledFunction::new(&x, &["x".into()]).unwrap().call(&[]).is_nan());
+    }
+
+    #[test]
+    fn equal_parts_are_computed_once_and_unused_ones_not_at_all() {
+        let force = parse_expression("sin(x) + (gamma + mu*x')*(x - xc)^1.5*H(x - xc)").unwrap();
+        let names: Vec<Symbol> = ["x", "x'", "xc", "gamma", "mu"].map(Symbol::new).to_vec();
+        let compiled = CompiledFunction::new(&force, &names).unwrap();
+        // sin, -xc, x - xc, its root, its power, mu*x', + gamma, *, H, gate, +
+        assert!(compiled.instructions.len() <= 11, "{compiled:?}");
+        let expected = 0.5_f64.sin() + (2.0 + 3.0 * 0.1) * 0.25_f64.powi(3);
+        assert!((compiled.call(&[0.5, 0.1, 0.4375, 2.0, 3.0]) - expected).abs() < 1e-15);
+        let quotient = CompiledFunction::new(&parse_expression("x/(x'*xc)").unwrap(), &names).unwrap();
+        assert_eq!(quotient.instructions.len(), 2, "{quotient:?}");
+    }
+
+    #[test]
+    fn powers_of_sums_with_numbers_beyond_doubles() {
+        let (large, root) = (format!("1{}", "0".repeat(402)), format!("1{}", "0".repeat(201)));
+        let sum = format!("({large} + {large}*x + x^2)");
+        for (text, value) in [
+            (format!("sqrt{sum}/{root}"), 2.0),
+            (format!("{root}/sqrt{sum}"), 0.5),
+            (format!("{sum}^(3/2)/{large}/{root}"), 8.0),
+            (format!("{sum}^(1/3)/{large}^(1/3)"), 4.0_f64.cbrt()),
+            (format!("{sum}^2/{large}^2"), 16.0),
+            (format!("{root}*{root}*x/{sum}"), 0.75),
+        ] {
+            let found = at(&text, 3.0);
+            let close = found.as_ref().is_ok_and(|found| (found / value - 1.0).abs() < 1e-14);
+            assert!(close, "{found:?} for {value}");
+        }
+    }
+
+    #[test]
+    fn long_expressions_work_too() {
+        let text: Vec<String> = (1..=200).map(|k| format!("x^{k}/{k}")).collect();
+        let value = at(&text.join(" + "), 0.5).unwrap();
+        assert!((value - std::f64::consts::LN_2).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,93 @@
+//! The error of reading, shown under the text.
+
+use std::fmt;
+use std::ops::Range;
+
+use super::lexer::visible;
+
+/// What is wrong with a text, where, and what to write instead.
+///
+/// `Display` shows the line with a caret under the place:
+///
+/// ```text
+/// `2x`: a product needs its sign
+///   x'' + 2x = 0
+///         ^^ try `2*x`
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ParseError {
+    /// What is wrong, in one line.
+    pub message: String,
+    /// The bytes of the text that are meant.
+    pub span: Range<usize>,
+    /// What to write instead.
+    pub help: Option<String>,
+    /// The line of the text, cut to what fits, and a line with carets.
+    excerpt: [String; 2],
+}
+
+impl fmt::Display for ParseError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [line, carets] = &self.excerpt;
+        write!(formatter, "{}", self.message)?;
+        match (line.trim().is_empty(), &self.help) {
+            (true, None) => Ok(()),
+            (true, Some(help)) => write!(formatter, "\n  {help}"),
+            (false, None) => write!(formatter, "\n  {line}\n  {carets}"),
+            (false, Some(help)) => write!(formatter, "\n  {line}\n  {carets} {help}"),
+        }
+    }
+}
+
+impl std::error::Error for ParseError {}
+
+impl ParseError {
+    pub(super) fn new(text: &str, span: Range<usize>, message: &str, help: &str) -> Self {
+        let excerpt = excerpt(text, &span);
+        let help = (!help.is_empty()).then(|| help.to_string());
+        Self {
+            message: message.to_string(),
+            span,
+            help,
+            excerpt,
+        }
+    }
+}
+
+/// The line around the place, at most about a hundred characters of it, and the carets below.
+pub fn excerpt(text: &str, span: &Range<usize>) -> [String; 2] {
+    const WIDTH: usize = 100;
+    let start = text[..span.start].rfind(['\n', '\r', '\u{feff}']);
+    let start = start.map_or(0, |place| {
+        place + text[place..].chars().next().map_or(0, char::len_utf8)
+    });
+    let end = text[span.start..]
+        .find(['\n', '\r'])
+        .map_or(text.len(), |length| span.start + length);
+    let line = &text[start..end];
+    let column = text[start..span.start].chars().count();
+    let length = text[span.start..span.end.min(end).max(span.start)]
+        .chars()
+        .count()
+        .max(1);
+    // The place stands in the first third of a window that is cut on both sides.
+    let skipped = if column > WIDTH * 2 / 3 { column - WIDTH / 3 } else { 0 };
+    let shown: String = line.chars().skip(skipped).take(WIDTH).map(visible).collect();
+    let cut = line.chars().nth(skipped + WIDTH).is_some();
+    let (before, after) = (if skipped > 0 { "..." } else { "" }, if cut { "..." } else { "" });
+    let indent = before.len() + column - skipped;
+    let carets = length.min(WIDTH.saturating_sub(column - skipped).max(1));
+    [
+        format!("{before}{shown}{after}"),
+        format!("{}{}", " ".repeat(indent), "^".repeat(carets)),
+    ]
+}
+
+/// The text, cut to what fits into a message.
+pub(super) fn shortened(text: &str) -> String {
+    const LONGEST: usize = 40;
+    match text.char_indices().nth(LONGEST) {
+        None => text.chars().map(visible).collect(),
+        Some((cut, _)) => text[..cut].chars().map(visible).chain("...".chars()).collect(),
+    }
+}

@@ -1,0 +1,385 @@
+//! Expressions as text that reads back to the same tree, within the limits of reading: computed numbers and exponents
+//! may be longer than a text may hold.
+//!
+//! A product prints as a fraction: numerator over denominator, `8*eps*A/(3*pi)`; [`Expr::fraction`] is that split, for
+//! every other notation to share. A long number that is a decimal prints as one, `1e-300`. Powers with a negative number as exponent stand in the denominator; the power 1/2 is
+//! written `sqrt(k)`.
+
+use std::fmt::{self, Write};
+
+use num_traits::{One, Signed, Zero};
+
+use super::{Expr, Function, Node};
+use crate::decimal::decimal_of_long_fraction;
+use crate::exact::rational::{Rational, ratio};
+
+/// A term as sign, numerator and denominator, for printing.
+pub struct Fraction {
+    /// A minus in front of everything.
+    pub negative: bool,
+    /// The factors above the line, a number first; empty means 1.
+    pub numerator: Vec<Expr>,
+    /// The factors below the line, with their exponents turned positive; empty means no line.
+    pub denominator: Vec<Expr>,
+}
+
+impl Expr {
+    /// Sign, numerator and denominator. A sum is its own numerator, with its sign inside.
+    pub fn fraction(&self) -> Fraction {
+        let (coefficient, factors) = self.factors();
+        let number = |value: Rational| (!value.is_one()).then(|| Expr::number(value));
+        // A decimal stands above the line.
+        let (above, below) = match decimal_of_long_fraction(&coefficient) {
+            Some(_) => (coefficient.abs(), Rational::one()),
+            None => {
+                let (above, below) = coefficient.abs().into_raw();
+                (Rational::from_integer(above), Rational::from_integer(below))
+            }
+        };
+        let mut numerator: Vec<Expr> = number(above).into_iter().collect();
+        let mut denominator: Vec<Expr> = number(below).into_iter().collect();
+        for factor in factors {
+            match factor.node() {
+                Node::Power(base, exponent) => match exponent.as_number() {
+                    Some(number) if (-number).is_one() => denominator.push(base.clone()),
+                    Some(number) if number.is_negative() => {
+                        let positive = Expr::number(-number);
+                        denominator.push(Expr::from_node(Node::Power(base.clone(), positive)));
+                    }
+                    _ => numerator.push(factor.clone()),
+                },
+                _ => numerator.push(factor.clone()),
+            }
+        }
+        Fraction {
+            negative: coefficient.is_negative(),
+            numerator,
+            denominator,
+        }
+    }
+}
+
+impl fmt::Display for Expr {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write_expr(self, Place::Free, formatter)
+    }
+}
+
+/// An expression as it stands in parentheses or below a root, which the caller writes: `A^2 - x^2` for `-x^2 + A^2`.
+pub struct Inside<'a>(pub &'a Expr);
+
+impl fmt::Display for Inside<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write_expr(self.0, Place::Inside, formatter)
+    }
+}
+
+/// Without recursion: `open` holds what is still to be written, the next piece last.
+fn write_expr(expr: &Expr, place: Place, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let mut open = vec![Piece::Expr(expr.clone(), place)];
+    while let Some(piece) = open.pop() {
+        match piece {
+            Piece::Text(text) => formatter.write_str(text)?,
+            Piece::Expr(expr, place) => write_node(&expr, place, formatter, &mut open)?,
+        }
+    }
+    Ok(())
+}
+
+impl Expr {
+    /// The terms as they stand in parentheses: where the first has a minus, those next without one stand before it.
+    pub fn terms_inside(&self) -> impl Iterator<Item = &Self> {
+        let terms = self.terms();
+        let minus = terms.iter().take_while(|term| term.has_leading_minus()).count();
+        let (minus, others) = terms.split_at(minus);
+        let plus = others.iter().take_while(|term| !term.has_leading_minus()).count();
+        let (plus, others) = others.split_at(plus);
+        plus.iter().chain(minus).chain(others)
+    }
+
+    /// A difference turned round, `a - b` for `b - a`, which takes a minus in front of it away.
+    pub fn turned_round(&self) -> Option<Self> {
+        match self.terms() {
+            [one, other] if !one.has_leading_minus() && other.has_leading_minus() => Some(-self),
+            _ => None,
+        }
+    }
+}
+
+enum Piece {
+    Text(&'static str),
+    Expr(Expr, Place),
+}
+
+/// What surrounds an expression, and with it which expressions need parentheses.
+#[derive(Clone, Copy, PartialEq)]
+enum Place {
+    /// Alone.
+    Free,
+    /// An argument, or in parentheses already.
+    Inside,
+    /// A term after its sign has been written: the sign is left out.
+    Unsigned,
+    /// A factor above the line.
+    Factor,
+    /// The base of a power.
+    Base,
+    /// The exponent of a power.
+    Exponent,
+}
+
+/// Whether an expression stands in parentheses there.
+fn in_parentheses(expr: &Expr, place: Place) -> bool {
+    match expr.node() {
+        Node::Symbol(_) | Node::Pi | Node::Function(..) => false,
+        Node::Number(value) => match place {
+            Place::Free | Place::Inside | Place::Unsigned => false,
+            Place::Factor => !value.is_integer() && decimal_of_long_fraction(value).is_none(),
+            Place::Base | Place::Exponent => !value.is_integer() || value.is_negative(),
+        },
+        Node::Sum(_) => !matches!(place, Place::Free | Place::Inside),
+        Node::Product(..) => !matches!(place, Place::Free | Place::Inside | Place::Unsigned),
+        Node::Power(_, exponent) => match place {
+            Place::Free | Place::Inside | Place::Unsigned | Place::Factor => false,
+            Place::Base | Place::Exponent => !is_half(exponent),
+        },
+    }
+}
+
+fn write_node(expr: &Expr, place: Place, out: &mut fmt::Formatter<'_>, open: &mut Vec<Piece>) -> fmt::Result {
+    if in_parentheses(expr, place) {
+        open.extend([Piece::Text(")"), Piece::Expr(expr.clone(), Place::Inside)]);
+        return out.write_char('(');
+    }
+    match expr.node() {
+        Node::Pi => out.write_str("pi"),
+        Node::Symbol(symbol) => out.write_str(symbol.name()),
+        Node::Number(value) if place == Place::Unsigned => write_number(&value.abs(), out),
+        Node::Number(value) => write_number(value, out),
+        Node::Sum(terms) => {
+            let terms: Vec<&Expr> = match place {
+                Place::Inside => expr.terms_inside().collect(),
+                _ => terms.iter().collect(),
+            };
+            for (index, term) in terms.into_iter().enumerate().rev() {
+                open.push(Piece::Expr(term.clone(), Place::Unsigned));
+                match (index, term.has_leading_minus()) {
+                    (0, false) => {}
+                    (0, true) => open.push(Piece::Text("-")),
+                    (_, false) => open.push(Piece::Text(" + ")),
+                    (_, true) => open.push(Piece::Text(" - ")),
+                }
+            }
+            Ok(())
+        }
+        Node::Function(function, arguments) => {
+            open.push(Piece::Text(")"));
+            for (index, argument) in arguments.iter().enumerate().rev() {
+                open.push(Piece::Expr(argument.clone(), Place::Inside));
+                if index > 0 {
+                    open.push(Piece::Text(", "));
+                }
+            }
+            write!(out, "{}(", function.name())
+        }
+        Node::Power(base, exponent) if is_half(exponent) => {
+            open.extend([Piece::Text(")"), Piece::Expr(base.clone(), Place::Inside)]);
+            out.write_str("sqrt(")
+        }
+        Node::Power(base, exponent) if !exponent.as_number().is_some_and(Signed::is_negative) => {
+            open.extend([
+                Piece::Expr(exponent.clone(), Place::Exponent),
+                Piece::Text("^"),
+                Piece::Expr(base.clone(), Place::Base),
+            ]);
+            Ok(())
+        }
+        Node::Product(..) | Node::Power(..) => {
+            let mut fraction = expr.fraction();
+            if fraction.negative && place != Place::Unsigned {
+                let mut factors = fraction.numerator.iter_mut();
+                match factors.find_map(|factor| Some((factor.turned_round()?, factor))) {
+                    Some((turned, factor)) => *factor = turned,
+                    None => out.write_char('-')?,
+                }
+            }
+            push_fraction(&fraction, open);
+            Ok(())
+        }
+    }
+}
+
+/// A fraction, or the decimal that a long one is.
+fn write_number(value: &Rational, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+    match decimal_of_long_fraction(value) {
+        Some(decimal) => out.write_str(&decimal),
+        None => write!(out, "{value}"),
+    }
+}
+
+/// Numerator over denominator, without the sign.
+fn push_fraction(fraction: &Fraction, open: &mut Vec<Piece>) {
+    match fraction.denominator.as_slice() {
+        [] => {}
+        [only] => open.extend([Piece::Expr(only.clone(), Place::Factor), Piece::Text("/")]),
+        several => {
+            open.push(Piece::Text(")"));
+            push_factors(several, open);
+            open.push(Piece::Text("/("));
+        }
+    }
+    match fraction.numerator.as_slice() {
+        [] => open.push(Piece::Text("1")),
+        factors => push_factors(factors, open),
+    }
+}
+
+fn push_factors(factors: &[Expr], open: &mut Vec<Piece>) {
+    for (index, factor) in factors.iter().enumerate().rev() {
+        open.push(Piece::Expr(factor.clone(), Place::Factor));
+        if index > 0 {
+            open.push(Piece::Text("*"));
+        }
+    }
+}
+
+fn is_half(exponent: &Expr) -> bool {
+    exponent
+        .as_number()
+        .is_some_and(|number| number.numer() == ratio(1, 2).numer() && number.denom() == ratio(1, 2).denom())
+}
+
+/// The start of an expression, short enough for a message.
+pub(super) fn in_message(expr: &Expr) -> String {
+    let mut text = Shortened(String::new());
+    // The error says only that the rest was cut off.
+    match is_long_number(expr) {
+        true => "a long number".into(),
+        false if write!(text, "{expr}").is_err() => text.0 + "...",
+        false => text.0,
+    }
+}
+
+/// `base^exponent`, without building it.
+pub(super) fn power_in_message(base: &Expr, exponent: &Expr) -> String {
+    let part = |expr: &Expr| match expr.node() {
+        Node::Symbol(_) | Node::Pi | Node::Function(..) => in_message(expr),
+        Node::Number(value) if value.is_integer() && !value.is_negative() => in_message(expr),
+        _ => format!("({})", in_message(expr)),
+    };
+    format!("{}^{}", part(base), part(exponent))
+}
+
+/// `function(arguments)`, without building it.
+pub(super) fn call_in_message(function: Function, arguments: &[Expr]) -> String {
+    let arguments: Vec<String> = arguments.iter().map(in_message).collect();
+    format!("{}({})", function.name(), arguments.join(", "))
+}
+
+fn is_long_number(expr: &Expr) -> bool {
+    expr.as_number()
+        .is_some_and(|number| !number.is_zero() && number.numer().bits() + number.denom().bits() > 4_096)
+}
+
+struct Shortened(String);
+
+impl Write for Shortened {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        const LONGEST: usize = 40;
+        let room = LONGEST.saturating_sub(self.0.chars().count());
+        self.0.extend(text.chars().take(room));
+        if text.chars().count() > room {
+            Err(fmt::Error)
+        } else {
+            Ok(())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::expr::{Expr, parse_expression};
+
+    /// Prints as it is written here, and reads back to the same tree.
+    #[test]
+    fn prints_as_people_write() {
+        for text in [
+            "1 - A^2/8",
+            "3*eps*A^2/4",
+            "x'' + 2*zeta*x' + sin(x)",
+            "x'' + x - eps*x'*(1 - x^2)",
+            "gamma*(x - xc)^(3/2)*H(x - xc)",
+            "sqrt(k)",
+            "1/sqrt(k)",
+            "x^(3/2)",
+            "8*eps*A/(3*pi)",
+            "-x/6",
+            "-1/2",
+            "1/(1 + x^2)",
+            "-3/(x*(1 + x)^2)",
+            "2/(3*x^2)",
+            "(1 + x)/y",
+            "-y*(1 + x)/3",
+            "x^(-y)",
+            "2^(-x)",
+            "(-2)^x",
+            "(1/2)^x",
+            "-2^x",
+            "x^y^z",
+            "(x^y)^z",
+            "(x^2)^(1/3)",
+            "sqrt(x)^(1/3)",
+            "sqrt(1/x)",
+            "x^sin(y)",
+            "x^sqrt(y)",
+            "2*sqrt(3)*pi*k",
+            "max(x, -y)",
+            "1/(pi*x)",
+            "pi/2",
+            "-sin(x)/(2*cos(1 - x)^2)",
+        ] {
+            // `x^y^z` groups to the right and prints with parentheses.
+            let expected = if text == "x^y^z" { "x^(y^z)" } else { text };
+            let expr = parse_expression(text).unwrap();
+            assert_eq!(expr.to_string(), expected);
+            assert_eq!(parse_expression(expected).unwrap(), expr, "{text}");
+        }
+    }
+
+    #[test]
+    fn long_fractions_that_end_are_decimals() {
+        for (text, printed) in [
+            ("1e-300", "1e-300"),
+            ("-1.5e-10", "-1.5e-10"),
+            ("3.00853856091339", "3.00853856091339"),
+            ("0.00012345678901", "0.00012345678901"),
+            ("1234567890.12345", "1234567890.12345"),
+            ("1e300", "1e300"),
+            ("-12e200", "-1.2e201"),
+            ("123456789012345678901", "123456789012345678901"),
+            // Short ones, those that do not end, and those that are longer as decimals.
+            ("0.323", "323/1000"),
+            ("1e-6", "1/1000000"),
+            ("1/30000000000000", "1/30000000000000"),
+            ("549183/2097152", "549183/2097152"),
+            ("7/4503599627370496", "7/4503599627370496"),
+            ("A/403291461126605635584000000", "A/403291461126605635584000000"),
+            ("0.1234567890123456789", "1234567890123456789/10000000000000000000"),
+        ] {
+            let number = parse_expression(text).unwrap();
+            assert_eq!(number.to_string(), printed);
+            assert_eq!(parse_expression(printed).unwrap(), number, "{text}");
+        }
+    }
+
+    #[test]
+    fn fractions_split() {
+        let texts = |list: &[Expr]| list.iter().map(ToString::to_string).collect::<Vec<_>>();
+        let fraction = parse_expression("-8*eps*A/(3*pi*sqrt(k))").unwrap().fraction();
+        assert!(fraction.negative);
+        assert_eq!(texts(&fraction.numerator), ["8", "eps", "A"]);
+        assert_eq!(texts(&fraction.denominator), ["3", "pi", "sqrt(k)"]);
+        let whole = parse_expression("1/x").unwrap().fraction();
+        assert!(!whole.negative && whole.numerator.is_empty() && texts(&whole.denominator) == ["x"]);
+    }
+}

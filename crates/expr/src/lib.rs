@@ -1,0 +1,24 @@
+//! Exact numbers, and expressions: the one tree that every formula and every equation is.
+//!
+//! In: text. Out: numbers exact to the last digit or with a proved bound, and a tree in one normal form that prints, differentiates,
+//! substitutes and evaluates.
+//!
+//! Five names to know: [`exact::Rational`], a fraction of integers of any length; [`exact::Ring`], the operations that a derivation
+//! needs of its coefficients; [`expr::Expr`], the tree, and [`expr::parse_equation`], its parser; [`expr::CompiledFunction`], its
+//! evaluation in numbers. Numbers and expressions share a crate because a polynomial prints as the expression that it is.
+
+#![warn(missing_docs)]
+
+pub mod spelling;
+pub mod symbol;
+
+pub mod exact;
+
+pub mod decimal;
+
+pub mod expr;
+
+pub mod values;
+
+pub use symbol::Symbol;
+pub use values::{ValueError, Values};

@@ -1,0 +1,139 @@
+//! Names of parameters, coordinates and derivatives.
+//!
+//! Every name is stored once for the life of the program, so a [`Symbol`] is a pointer and a length, copies freely and
+//! compares by its text: the normal form of an expression, and with it every printed formula, is the same on every run.
+
+use std::collections::HashSet;
+use std::fmt;
+use std::sync::{LazyLock, Mutex, PoisonError};
+
+/// A name such as `eps`, `A`, `x` or `x'`.
+///
+/// The derivative of a coordinate is the same name with primes: `x'` is the velocity, `x''` the acceleration.
+///
+/// ```
+/// use lindstedt::Symbol;
+/// let x = Symbol::new("x");
+/// assert_eq!(x.derivative().name(), "x'");
+/// assert_eq!(x.derivative().primes(), 1);
+/// ```
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Symbol(&'static str);
+
+/// Greek letters by name: what a coordinate may be called beside a single letter, and what is set as that letter in formulas.
+pub const GREEK: [&str; 21] = [
+    "alpha", "beta", "gamma", "delta", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi", "rho", "sigma",
+    "tau", "phi", "chi", "psi", "omega", "Omega", "Lambda",
+];
+
+static NAMES: LazyLock<Mutex<HashSet<&'static str>>> = LazyLock::new(Mutex::default);
+
+impl Symbol {
+    /// The symbol of this name. Names are kept until the program ends.
+    pub fn new(name: &str) -> Self {
+        let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = names.get(name) {
+            return Self(known);
+        }
+        let kept: &'static str = Box::leak(name.into());
+        names.insert(kept);
+        Self(kept)
+    }
+
+    /// The text of the name, primes included.
+    pub fn name(self) -> &'static str {
+        self.0
+    }
+
+    /// The time derivative of a coordinate: one more prime.
+    pub fn derivative(self) -> Self {
+        Self::new(&format!("{}'", self.0))
+    }
+
+    /// How many primes the name ends with: 0 for `x`, 2 for `x''`.
+    pub fn primes(self) -> usize {
+        self.0.len() - self.0.trim_end_matches('\'').len()
+    }
+
+    /// Whether the name is that of a Greek letter, with an index or without.
+    pub fn is_greek(self) -> bool {
+        let stem = self.0.trim_end_matches(|letter: char| letter.is_ascii_digit());
+        GREEK.contains(&stem.trim_end_matches('_'))
+    }
+
+    /// The name without its primes: the coordinate itself.
+    pub fn coordinate(self) -> Self {
+        Self::new(self.0.trim_end_matches('\''))
+    }
+}
+
+/// A name for something that the program introduces: `wanted` where nothing in `taken` is called so, else the first of
+/// `wanted_`, `wanted__`, ... that is free.
+///
+/// Every name in an answer that is not the user's own comes from here or from [`fresh_stem`].
+///
+/// ```
+/// use lindstedt::expr::fresh;
+/// assert_eq!(fresh("hbar", &[]).name(), "hbar");
+/// assert_eq!(fresh("hbar", &["hbar".into(), "hbar_".into()]).name(), "hbar__");
+/// ```
+pub fn fresh(wanted: &str, taken: &[Symbol]) -> Symbol {
+    let mut name = wanted.to_owned();
+    while taken.iter().any(|symbol| symbol.name() == name) {
+        name.push('_');
+    }
+    Symbol::new(&name)
+}
+
+/// As [`fresh`] for a whole family `stem0`, `stem1`, ..., `stem_n`: a stem that no name in `taken` continues with digits.
+///
+/// ```
+/// use lindstedt::expr::fresh_stem;
+/// assert_eq!(fresh_stem("W", &["k".into()]), "W");
+/// assert_eq!(fresh_stem("W", &["W2".into()]), "W_");
+/// ```
+pub fn fresh_stem(wanted: &str, taken: &[Symbol]) -> String {
+    let continues = |stem: &str, symbol: &Symbol| {
+        let rest = symbol.name().strip_prefix(stem);
+        rest.is_some_and(|rest| rest.bytes().all(|letter| letter.is_ascii_digit()) && !rest.is_empty())
+    };
+    let mut stem = wanted.to_owned();
+    while taken.iter().any(|symbol| continues(&stem, symbol)) {
+        stem.push('_');
+    }
+    stem
+}
+
+/// The name of the phase of a motion: `theta`, or `phi` where the equation calls something of its own `theta`.
+///
+/// ```
+/// use lindstedt::expr::phase_beside;
+/// assert_eq!(phase_beside(&["x".into()]).name(), "theta");
+/// assert_eq!(phase_beside(&["theta".into()]).name(), "phi");
+/// ```
+pub fn phase_beside(taken: &[Symbol]) -> Symbol {
+    let theta = Symbol::new("theta");
+    if taken.contains(&theta) {
+        fresh("phi", taken)
+    } else {
+        theta
+    }
+}
+
+impl fmt::Display for Symbol {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.0)
+    }
+}
+
+impl fmt::Debug for Symbol {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.0)
+    }
+}
+
+impl From<&str> for Symbol {
+    fn from(name: &str) -> Self {
+        Self::new(name)
+    }
+}

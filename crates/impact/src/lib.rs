@@ -1,0 +1,35 @@
+//! The pendulum that hits an elastic barrier, and the search for the best damper.
+//!
+//! In: masses, lengths, a contact law. Out: three phases in closed form, all forces event by event, sweeps, materials, the design
+//! that rests soonest.
+//!
+//! Five names to know: [`impact::Model`], equation (7); [`impact::chain`], impacts in closed form; [`impact::primary`], the main mass;
+//! [`impact::materials`]; [`optimize::optimize`].
+
+#![warn(missing_docs)]
+
+#[doc(no_inline)]
+pub use lindstedt_dynamics::{mechanics, system};
+#[doc(no_inline)]
+pub use lindstedt_expr::{decimal, exact, expr, spelling, symbol, values};
+#[doc(no_inline)]
+pub use lindstedt_numeric::{genetic, interrupt, numeric, parallel};
+#[doc(no_inline)]
+pub use lindstedt_oscillator::{conservative, equilibrium, method, oscillator, solution};
+#[doc(no_inline)]
+pub use lindstedt_series::series;
+#[doc(no_inline)]
+pub use lindstedt_verify::{trajectory, verify};
+
+pub mod impact;
+
+pub mod optimize;
+
+pub use interrupt::{Counter, Interrupt, Progress, Supervision};
+pub use method::motion::{Motion, NoMotion};
+pub use method::{Options, solve};
+pub use oscillator::Oscillator;
+pub use solution::{Method, Solution};
+pub use symbol::Symbol;
+pub use values::{ValueError, Values};
+pub use verify::{Verdict, judge};

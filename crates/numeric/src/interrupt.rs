@@ -1,0 +1,120 @@
+//! A request to stop: long work looks at it between its steps, and hands back what it has. How far it has come is told the same way.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// Somebody who may ask to stop; nobody by default.
+///
+/// ```
+/// use std::sync::atomic::{AtomicBool, Ordering};
+/// use lindstedt::Interrupt;
+///
+/// static STOP: AtomicBool = AtomicBool::new(false);
+/// let interrupt = Interrupt::by(&STOP);
+/// assert!(!interrupt.is_requested());
+/// STOP.store(true, Ordering::Relaxed);
+/// assert!(interrupt.is_requested());
+/// ```
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Interrupt(Option<&'static AtomicBool>);
+
+impl Interrupt {
+    /// Asked for by setting this flag.
+    pub fn by(flag: &'static AtomicBool) -> Self {
+        Self(Some(flag))
+    }
+
+    /// Whether to stop.
+    pub fn is_requested(self) -> bool {
+        self.0.is_some_and(|flag| flag.load(Ordering::Relaxed))
+    }
+}
+
+/// Somebody who sees how far long work has come; nobody by default.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Progress(Option<&'static Counter>);
+
+/// How many parts of how many are done.
+#[derive(Debug, Default)]
+pub struct Counter {
+    done: AtomicU64,
+    all: AtomicU64,
+}
+
+impl Counter {
+    /// Nothing is known yet.
+    pub const fn new() -> Self {
+        Self {
+            done: AtomicU64::new(0),
+            all: AtomicU64::new(0),
+        }
+    }
+
+    /// How many parts are done, of how many; of none before the work has begun.
+    pub fn read(&self) -> (u64, u64) {
+        (self.done.load(Ordering::Relaxed), self.all.load(Ordering::Relaxed))
+    }
+}
+
+impl Progress {
+    /// Seen in this counter.
+    pub fn by(counter: &'static Counter) -> Self {
+        Self(Some(counter))
+    }
+
+    /// Work of so many parts begins.
+    pub fn begin(self, parts: usize) {
+        if let Some(counter) = self.0 {
+            counter.done.store(0, Ordering::Relaxed);
+            counter.all.store(parts as u64, Ordering::Relaxed);
+        }
+    }
+
+    /// A part is done.
+    pub fn advance(self) {
+        if let Some(counter) = self.0 {
+            counter.done.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+}
+
+impl PartialEq for Progress {
+    fn eq(&self, other: &Self) -> bool {
+        match (self.0, other.0) {
+            (Some(one), Some(other)) => std::ptr::eq(one, other),
+            (one, other) => one.is_none() && other.is_none(),
+        }
+    }
+}
+
+/// Who may stop long work, and who sees how far it has come; nobody by default.
+///
+/// ```
+/// use lindstedt::{Counter, Interrupt, Options, Oscillator, Progress, Supervision, solve};
+/// use std::sync::atomic::AtomicBool;
+///
+/// // Stopped before it begins: what there is are the orders that come at once.
+/// static STOP: AtomicBool = AtomicBool::new(true);
+/// static COUNTER: Counter = Counter::new();
+/// let supervision = Supervision { interrupt: Interrupt::by(&STOP), progress: Progress::by(&COUNTER) };
+/// let options = Options { order: Some(300), frequency_alone: true, supervision, ..Options::default() };
+/// let solution = solve(&Oscillator::parse("x'' - mu*(1 - x^2)*x' + x = 0")?, &options)?;
+/// assert!((1..300).contains(&solution.order));
+/// assert!(solution.validity.iter().any(|note| note.to_string().contains("stopped")));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Supervision {
+    /// Who may stop it.
+    pub interrupt: Interrupt,
+    /// Who sees how far it has come.
+    pub progress: Progress,
+}
+
+impl PartialEq for Interrupt {
+    fn eq(&self, other: &Self) -> bool {
+        match (self.0, other.0) {
+            (Some(one), Some(other)) => std::ptr::eq(one, other),
+            (one, other) => one.is_none() && other.is_none(),
+        }
+    }
+}

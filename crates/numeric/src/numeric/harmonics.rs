@@ -1,0 +1,127 @@
+//! The harmonics of a period that is known at equal steps, and back, by the fast Fourier transform.
+//!
+//! ```text
+//! a_k = 2/N sum_j f_j cos(k theta_j),   b_k = 2/N sum_j f_j sin(k theta_j),   theta_j = 2 pi j/N
+//! ```
+//!
+//! A transform of N samples costs N log N products, whatever the number of harmonics.
+
+use std::sync::Arc;
+
+use num_complex::Complex;
+use rustfft::{Fft, FftPlanner};
+
+/// Harmonics 0 to some highest one: twice the mean, then cosines; sines.
+pub struct Harmonics {
+    /// Twice the mean, then the coefficient of `cos(k theta)` at `k`.
+    pub cosines: Vec<f64>,
+    /// Zero, then the coefficient of `sin(k theta)` at `k`.
+    pub sines: Vec<f64>,
+}
+
+impl Harmonics {
+    /// Adds what stands at one phase.
+    pub fn add(&mut self, phase: f64, value: f64) {
+        if value == 0.0 {
+            return;
+        }
+        let value = value / std::f64::consts::PI;
+        let (step_sine, step_cosine) = phase.sin_cos();
+        let (mut cosine, mut sine) = (1.0, 0.0);
+        for (cosines, sines) in self.cosines.iter_mut().zip(&mut self.sines) {
+            *cosines += value * cosine;
+            *sines += value * sine;
+            (cosine, sine) = (
+                cosine * step_cosine - sine * step_sine,
+                sine * step_cosine + cosine * step_sine,
+            );
+        }
+    }
+
+    /// The cosine of an index of either sign.
+    pub fn cosine(&self, index: isize) -> f64 {
+        self.cosines[index.unsigned_abs()]
+    }
+
+    /// The sine of an index of either sign.
+    pub fn sine(&self, index: isize) -> f64 {
+        let value = self.sines[index.unsigned_abs()];
+        if index < 0 { -value } else { value }
+    }
+}
+
+/// The transform of a number of samples.
+#[derive(Clone)]
+pub struct Transform(Arc<dyn Fft<f64>>);
+
+impl std::fmt::Debug for Transform {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.debug_tuple("Transform").field(&self.samples()).finish()
+    }
+}
+
+impl Transform {
+    /// Of so many samples a period.
+    pub fn new(samples: usize) -> Self {
+        Self(FftPlanner::new().plan_fft_forward(samples))
+    }
+
+    /// The number of samples.
+    pub fn samples(&self) -> usize {
+        self.0.len()
+    }
+
+    /// The harmonics of samples, up to `count`, which is at most half the number of samples.
+    pub fn harmonics(&self, values: &[f64], count: usize) -> Harmonics {
+        let mut parts: Vec<Complex<f64>> = values.iter().map(|value| Complex::from(*value)).collect();
+        self.0.process(&mut parts);
+        let factor = 2.0 / values.len() as f64;
+        let (cosines, sines) = parts
+            .iter()
+            .take(count + 1)
+            .map(|part| (factor * part.re, -factor * part.im))
+            .unzip();
+        Harmonics { cosines, sines }
+    }
+
+    /// The sum of waves, `(cosine, sine)` of the harmonics from 0 on, at the samples.
+    pub fn sum_of_waves(&self, waves: impl Iterator<Item = [f64; 2]>) -> Vec<f64> {
+        let mut parts: Vec<Complex<f64>> = waves.map(|[cosine, sine]| Complex::new(cosine, sine)).collect();
+        parts.resize(self.samples(), Complex::from(0.0));
+        self.0.process(&mut parts);
+        parts.iter().map(|part| part.re).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against the sums that define them, and there and back.
+    #[test]
+    fn harmonics_are_the_sums_that_define_them() {
+        let transform = Transform::new(64);
+        let phase = |sample: usize| std::f64::consts::TAU * sample as f64 / 64.0;
+        let values: Vec<f64> = (0..64).map(|sample| (2.0 * phase(sample).cos()).exp().sin()).collect();
+        let found = transform.harmonics(&values, 20);
+        for (harmonic, (cosine, sine)) in found.cosines.iter().zip(&found.sines).enumerate() {
+            let sum = |wave: fn(f64) -> f64| -> f64 {
+                let terms = values.iter().enumerate();
+                terms
+                    .map(|(sample, value)| value * wave(harmonic as f64 * phase(sample)))
+                    .sum::<f64>()
+                    / 32.0
+            };
+            assert!((cosine - sum(f64::cos)).abs() < 1e-14);
+            assert!((sine - sum(f64::sin)).abs() < 1e-14);
+        }
+        let waves = [[0.5, 0.0], [1.0, -2.0], [0.25, 3.0]];
+        let there = transform.sum_of_waves(waves.into_iter());
+        let back = transform.harmonics(&there, 2);
+        assert!((back.cosines[0] - 1.0).abs() < 1e-15 && back.sines[0].abs() < 1e-15);
+        for (harmonic, [cosine, sine]) in waves.into_iter().enumerate().skip(1) {
+            assert!((back.cosines[harmonic] - cosine).abs() < 1e-14);
+            assert!((back.sines[harmonic] - sine).abs() < 1e-14);
+        }
+    }
+}

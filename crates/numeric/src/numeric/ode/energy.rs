@@ -1,0 +1,641 @@
+//! Conservative motion by its energy: the other turning point, and how long a motion takes from one to the other as a smooth
+//! integrand. Numbers only: the judge and the method `exact` integrate it each for itself.
+//!
+//! Reference: L. D. Landau and E. M. Lifshitz, *Mechanics*, 3rd ed., section 11. Between the turning points `x_0` and `x_1`,
+//! with `U(x) = V(x_0) - V(x)`,
+//!
+//! ```text
+//! T = 2 int dx / sqrt(2 U),   x = m + r sin phi,   U = (x_0 - x)(x - x_1) g(x)   ->   T = 2 int dphi / sqrt(2 g)
+//! ```
+//!
+//! The last integrand is smooth between the corners and narrow places of the force, at which it is cut. `U` near either end is
+//! the mean of the force from there, so nothing cancels. A force that is infinite in the middle of a symmetric motion, as `1/x` or
+//! `sgn(x)/sqrt(abs(x))`, is cut at distances of equal ratio towards it; each `U` is counted from the end on its own side, so that
+//! none goes through the middle, where that of `1/x` is infinite and `dt/dphi` zero.
+
+use std::cell::Cell;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
+
+use super::IntegrationError;
+use super::quadrature::{QuadratureError, integrate_within, nodes_and_weights};
+use super::root::{RootError, find_root};
+
+/// Relative tolerance of the quadratures.
+const TOLERANCE: f64 = 1e-14;
+
+/// Relative tolerance where there are many of them.
+const TOLERANCE_OF_PIECES: f64 = 1e-12;
+
+/// Why there is no period.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PeriodError {
+    /// Released there, the motion leaves instead of swinging.
+    #[error(
+        "no periodic motion about x = {equilibrium}: released at rest from x = {start}, the force does not pull back there{}",
+        periodic_elsewhere(range)
+    )]
+    PushedAway {
+        /// The release point.
+        start: f64,
+        /// The equilibrium.
+        equilibrium: f64,
+        /// The range of periodic motions, in words.
+        range: Option<String>,
+    },
+    /// The motion turns before it reaches the equilibrium.
+    #[error(
+        "no motion about x = {equilibrium}: released at rest from x = {start} it turns back before it gets there, and swings about another equilibrium{}",
+        periodic_elsewhere(range)
+    )]
+    OtherWell {
+        /// The release point.
+        start: f64,
+        /// The equilibrium.
+        equilibrium: f64,
+        /// The range of periodic motions, in words.
+        range: Option<String>,
+    },
+    /// Too small a motion to pass the unstable equilibrium that it is asked about.
+    #[error(
+        "no motion through x = {equilibrium}: released at rest from x = {start} it stays in one well, and it needs an amplitude above {least}"
+    )]
+    OneWell {
+        /// The release point.
+        start: f64,
+        /// The unstable equilibrium.
+        equilibrium: f64,
+        /// The least amplitude, to six digits.
+        least: f64,
+    },
+    /// No second turning point.
+    #[error(
+        "no periodic motion: released at rest from x = {start}, the motion does not turn back before x = {searched:.2e}{}",
+        periodic_elsewhere(range)
+    )]
+    Escapes {
+        /// The release point.
+        start: f64,
+        /// How far the search went.
+        searched: f64,
+        /// The range of periodic motions, in words.
+        range: Option<String>,
+    },
+    /// A speed that grows faster than the force at rest could make it grow.
+    #[error(
+        "no periodic motion: released at rest from x = {start}, the motion runs away: its speed grows beyond all bounds by t = {time}"
+    )]
+    RunsAway {
+        /// The release point.
+        start: f64,
+        /// When.
+        time: f64,
+    },
+    /// Released farther out than motions come back from, where what becomes of this one has no range of its own.
+    #[error("{error}; motions are {range}")]
+    OutsideWell {
+        /// The fate of this motion.
+        error: Box<PeriodError>,
+        /// The range of periodic motions, in words.
+        range: String,
+    },
+    /// On the separatrix, to the digits of the numbers.
+    #[error(
+        "no periodic motion: released at rest from x = {start}, it is on the separatrix of the unstable equilibrium x = {place}, and \
+         never comes back"
+    )]
+    Separatrix {
+        /// The release point.
+        start: f64,
+        /// The unstable equilibrium.
+        place: f64,
+    },
+    /// So close to the separatrix that rounding decides how long the motion stays there.
+    #[error(
+        "released at rest from x = {start}, the motion is too close to the separatrix of the unstable equilibrium x = {place} for its \
+         period to be computed: on the separatrix it never comes back"
+    )]
+    NearSeparatrix {
+        /// The release point.
+        start: f64,
+        /// The unstable equilibrium.
+        place: f64,
+    },
+    /// A place in the way that no motion passes.
+    #[error("the motion runs into x = {place}, where the force has no finite value")]
+    Pole {
+        /// Where.
+        place: f64,
+    },
+    /// The force is beyond all numbers where the motion leads.
+    #[error("the force overflows at x = {place:e}: `{term}` is beyond the range of double precision, 1.8e308")]
+    Overflow {
+        /// Where.
+        place: f64,
+        /// What is beyond, in words.
+        term: String,
+    },
+    /// The force changes so often along the motion that its period would take too long.
+    #[error("the force changes too often along this motion for its period to be computed")]
+    Waves,
+    /// The motion did not come back within the time allowed.
+    #[error("no return to a turning point within t = {0}")]
+    NoReturn(f64),
+    /// A quadrature failed.
+    #[error(transparent)]
+    Quadrature(#[from] QuadratureError),
+    /// A root was lost.
+    #[error(transparent)]
+    Root(#[from] RootError),
+    /// The integration failed.
+    #[error(transparent)]
+    Integration(#[from] IntegrationError),
+}
+
+/// The end of a message, where it is known for which amplitudes motions are periodic.
+fn periodic_elsewhere(range: &Option<String>) -> String {
+    range
+        .as_ref()
+        .map_or_else(String::new, |range| format!("; motions are {range}"))
+}
+
+impl PeriodError {
+    /// With the amplitudes at which motions are periodic, in words.
+    #[must_use]
+    pub fn with_range(mut self, words: String) -> Self {
+        match &mut self {
+            Self::PushedAway { range, .. } | Self::OtherWell { range, .. } | Self::Escapes { range, .. } => {
+                *range = Some(words);
+                self
+            }
+            _ => Self::OutsideWell {
+                error: Box::new(self),
+                range: words,
+            },
+        }
+    }
+
+    /// The same where positions were distances from `origin`.
+    #[must_use]
+    pub fn moved(mut self, origin: f64) -> Self {
+        match &mut self {
+            Self::PushedAway {
+                start,
+                equilibrium: other,
+                ..
+            }
+            | Self::OtherWell {
+                start,
+                equilibrium: other,
+                ..
+            }
+            | Self::OneWell {
+                start,
+                equilibrium: other,
+                ..
+            }
+            | Self::Escapes {
+                start, searched: other, ..
+            }
+            | Self::Separatrix { start, place: other }
+            | Self::NearSeparatrix { start, place: other } => {
+                *start += origin;
+                *other += origin;
+            }
+            Self::RunsAway { start: place, .. } | Self::Pole { place } | Self::Overflow { place, .. } => {
+                *place += origin
+            }
+            Self::OutsideWell { error, .. } => **error = error.as_ref().clone().moved(origin),
+            Self::Waves | Self::NoReturn(_) | Self::Quadrature(_) | Self::Root(_) | Self::Integration(_) => {}
+        }
+        self
+    }
+}
+
+/// A force of the position alone, and where it may turn fast.
+#[derive(Clone, Copy)]
+pub struct Force<'a> {
+    value: &'a dyn Fn(f64) -> f64,
+    cuts: &'a dyn Fn(f64, f64) -> Vec<f64>,
+}
+
+impl<'a> Force<'a> {
+    /// A force without corners or bumps narrower than the motion.
+    pub fn smooth(value: &'a dyn Fn(f64) -> f64) -> Self {
+        Self {
+            value,
+            cuts: &|_, _| vec![],
+        }
+    }
+
+    /// A force, and the places strictly between two positions at which to cut, in order: what lies between two cuts is
+    /// smooth and no narrower than its distance.
+    pub fn with_cuts(value: &'a dyn Fn(f64) -> f64, cuts: &'a dyn Fn(f64, f64) -> Vec<f64>) -> Self {
+        Self { value, cuts }
+    }
+
+    /// The force at a position.
+    pub fn at(&self, x: f64) -> f64 {
+        (self.value)(x)
+    }
+
+    /// Both ends and the cuts between them, from one end to the other.
+    fn knots(&self, from: f64, to: f64) -> Vec<f64> {
+        let mut knots = vec![from];
+        let cuts = (self.cuts)(from.min(to), from.max(to));
+        if from < to {
+            knots.extend(cuts);
+        } else {
+            knots.extend(cuts.into_iter().rev());
+        }
+        knots.push(to);
+        knots
+    }
+}
+
+/// `dt/dphi = 1/sqrt(2 g)` of the substitution above, piece by piece between the cuts of the force.
+pub struct Rates<'a> {
+    force: &'a Force<'a>,
+    /// By how much longer an instant takes than without inertia of position.
+    weight: &'a dyn Fn(f64) -> f64,
+    /// From the far turning point to the start.
+    pub knots: Vec<f64>,
+    /// phi at the knots, from -pi/2 to pi/2.
+    pub angles: Vec<f64>,
+    /// Whether the force is infinite in the middle.
+    infinite_middle: bool,
+    /// `V(start) - V` at the knots, added up from either end.
+    below_start: Vec<f64>,
+    below_end: Vec<f64>,
+}
+
+impl<'a> Rates<'a> {
+    /// Between two turning points, the first of them the start.
+    pub fn new(
+        force: &'a Force<'a>,
+        weight: &'a dyn Fn(f64) -> f64,
+        start: f64,
+        end: f64,
+    ) -> Result<Self, PeriodError> {
+        let infinite_middle = start == -end && grows_towards_zero(force.value, start);
+        let knots = match infinite_middle {
+            false => force.knots(end, start),
+            true => graded(&force.knots(end, start)),
+        };
+        let knots = resolved(force, knots, infinite_middle)?;
+        // A single piece needs no sums.
+        let pieces = knots.windows(2).filter(|_| knots.len() > 2);
+        let pieces = pieces.map(|pair| match infinite_middle && pair.contains(&0.0) {
+            // Never asked for, as no energy is counted through the middle.
+            true => Ok(f64::NAN),
+            false => integral(force.value, pair[0], pair[1], 0.0),
+        });
+        let works = pieces.collect::<Result<Vec<f64>, _>>()?;
+        let (mut below_end, mut below_start) = (vec![0.0], vec![0.0]);
+        for work in &works {
+            below_end.push(below_end[below_end.len() - 1] - work);
+        }
+        for work in works.iter().rev() {
+            below_start.push(below_start[below_start.len() - 1] + work);
+        }
+        below_start.reverse();
+        // By the half angle, so that a knot close to an end keeps its distance from it; that of a knot in the middle is known as it is.
+        let angle = |&knot: &f64| {
+            let part = (knot - end) / (start - end);
+            if infinite_middle && part > 0.25 && part < 0.75 {
+                (knot / start).asin()
+            } else if part < 0.5 {
+                2.0 * part.max(0.0).sqrt().asin() - FRAC_PI_2
+            } else {
+                FRAC_PI_2 - 2.0 * (1.0 - part).max(0.0).sqrt().asin()
+            }
+        };
+        Ok(Self {
+            force,
+            weight,
+            angles: knots.iter().map(angle).collect(),
+            knots,
+            infinite_middle,
+            below_start,
+            below_end,
+        })
+    }
+
+    /// The relative tolerance of an integral of these rates over one of the pieces.
+    pub fn tolerance(&self, piece: usize) -> f64 {
+        /// A piece that adds next to nothing is known no better than this.
+        const ROUGH: f64 = 1e-2;
+        let ends = [self.knots[piece], self.knots[piece + 1]];
+        if self.knots.len() == 2 {
+            TOLERANCE
+        } else if self.infinite_middle && ends.contains(&0.0) {
+            // The motion is nowhere faster: the piece adds less to the period than its share of the angles.
+            let share = (self.angles[piece + 1] - self.angles[piece]) / std::f64::consts::PI;
+            (TOLERANCE_OF_PIECES / share).min(ROUGH)
+        } else {
+            TOLERANCE_OF_PIECES
+        }
+    }
+
+    /// `dt/dphi` in one of the pieces.
+    pub fn time_per_angle(&self, piece: usize, phi: f64) -> Result<f64, QuadratureError> {
+        let (end, start) = (self.knots[0], self.knots[self.knots.len() - 1]);
+        let (low, high) = (self.knots[piece], self.knots[piece + 1]);
+        let mean_force = |from: f64, to: f64| integral(&|u| self.force.at(from + (to - from) * u), 0.0, 1.0, 0.0);
+        // From the nearer end: beside a pole the distance from it counts, not the position. Or from the middle, for the same reason.
+        let x = match phi >= 0.0 {
+            _ if self.infinite_middle && phi.abs() < FRAC_PI_6 => start * phi.sin(),
+            true => start - (start - end) * (0.5 * (FRAC_PI_2 - phi)).sin().powi(2),
+            false => end + (start - end) * (0.5 * (FRAC_PI_2 + phi)).sin().powi(2),
+        };
+        let single = self.knots.len() == 2;
+        let x = if single {
+            x
+        } else {
+            x.clamp(low.min(high), low.max(high))
+        };
+        // From the nearer end, so that nothing cancels; in the outermost piece the distance from that end cancels exactly.
+        let quotient = if phi >= 0.0 && piece + 2 == self.knots.len() {
+            mean_force(x, start)? / (x - end)
+        } else if phi < 0.0 && piece == 0 {
+            -mean_force(end, x)? / (start - x)
+        } else {
+            let energy = if phi >= 0.0 {
+                self.below_start[piece + 1] + (high - x) * mean_force(x, high)?
+            } else {
+                self.below_end[piece] - (x - low) * mean_force(low, x)?
+            };
+            let span = (start - end).powi(2);
+            energy / (span * (0.5 * (FRAC_PI_2 - phi)).sin().powi(2) * (0.5 * (FRAC_PI_2 + phi)).sin().powi(2))
+        };
+        Ok((self.weight)(x) / (2.0 * quotient).sqrt())
+    }
+}
+
+/// Whether a force grows without end towards zero, on both sides and as far as numbers go: `size` is how far from there the motion is.
+pub fn grows_towards_zero(force: &dyn Fn(f64) -> f64, size: f64) -> bool {
+    [1.0, -1.0].into_iter().all(|side| {
+        let [near, far, farther] = [1e-200, 1e-100, 1e-50].map(|part| force(side * part * size).abs());
+        far > farther && near > far
+    })
+}
+
+/// Further knots on both sides of zero, at distances of equal ratio: on each of these pieces a force that is infinite at zero is smooth.
+fn graded(knots: &[f64]) -> Vec<f64> {
+    /// What lies closer than this, relatively, adds less to the period than its rounding.
+    const CLOSEST: f64 = 1e-15;
+    const RATIO: f64 = 0.25;
+    let (end, start) = (knots[0], knots[knots.len() - 1]);
+    let sizes = std::iter::successors(Some(RATIO * start), |size| Some(RATIO * size));
+    let mut found: Vec<f64> = knots.to_vec();
+    found.push(0.0);
+    found.extend(
+        sizes
+            .take_while(|size| size.abs() > CLOSEST * start.abs())
+            .flat_map(|size| [size, -size]),
+    );
+    found.sort_by(|one, other| match end < start {
+        true => one.total_cmp(other),
+        false => other.total_cmp(one),
+    });
+    // Both zeros are one.
+    found.dedup_by(|next, last| next == last);
+    found
+}
+
+/// Knots so close that the force between two of them is integrated by a few panels, where between these ones it waves too
+/// often for many: an integral of its own for every instant would then cost as much as the square of the waves. What ends at a
+/// zero at which the force is infinite is left as it is.
+///
+/// # Errors
+/// More knots than can be waited for.
+fn resolved(force: &Force, knots: Vec<f64>, infinite_middle: bool) -> Result<Vec<f64>, PeriodError> {
+    const FEW_PANELS: i32 = 4;
+    const MOST_KNOTS: usize = 1 << 14;
+    const HALVINGS: u32 = 15;
+    let mut found: Vec<f64> = knots.first().copied().into_iter().collect();
+    for pair in knots.windows(2) {
+        let in_the_middle = infinite_middle && pair.contains(&0.0);
+        if in_the_middle || settled(force.value, pair[0], pair[1], 0.0, MOST_PANELS).is_some() {
+            found.push(pair[1]);
+            continue;
+        }
+        let mut open = vec![(pair[0], pair[1], 0)];
+        while let Some((from, to, halvings)) = open.pop() {
+            if found.len() + open.len() > MOST_KNOTS {
+                return Err(PeriodError::Waves);
+            }
+            if halvings == HALVINGS || settled(force.value, from, to, 0.0, FEW_PANELS).is_some() {
+                found.push(to);
+                continue;
+            }
+            let middle = 0.5 * (from + to);
+            open.extend([(middle, to, halvings + 1), (from, middle, halvings + 1)]);
+        }
+    }
+    Ok(found)
+}
+
+/// Panels after which an integral is left to adaptive quadrature.
+const MOST_PANELS: i32 = 64;
+
+/// The integral of a force: panels are doubled until the value settles. Errors below `negligible` do not count.
+fn integral(function: &dyn Fn(f64) -> f64, from: f64, to: f64, negligible: f64) -> Result<f64, QuadratureError> {
+    const MOST: usize = 1000;
+    integral_within(function, [from, to], negligible, MOST)
+}
+
+/// As [`integral`], by so many panels at most where they are halved one by one.
+fn integral_within(
+    function: &dyn Fn(f64) -> f64,
+    [from, to]: [f64; 2],
+    negligible: f64,
+    most_panels: usize,
+) -> Result<f64, QuadratureError> {
+    if let Some(value) = settled(function, from, to, negligible, MOST_PANELS) {
+        return Ok(value);
+    }
+    match integrate_within(function, &[from, to], [TOLERANCE, 0.0], most_panels) {
+        // Where pull and push cancel, the integral is as good as the forces in it allow.
+        Err(QuadratureError::NotConverged {
+            value, error_estimate, ..
+        }) if error_estimate <= f64::max(1e-11 * size(function, from, to), negligible) => Ok(value),
+        result => result.map(|(value, _)| value),
+    }
+}
+
+/// The value at which the integral settles while panels are doubled, or from which on doubling no longer brings it closer, which is
+/// where the rounding of the force itself begins.
+fn settled(function: &dyn Fn(f64) -> f64, from: f64, to: f64, negligible: f64, most_panels: i32) -> Option<f64> {
+    let with_panels = |panels: i32| {
+        let place = |k: i32| from + (to - from) * f64::from(k) / f64::from(panels);
+        let nodes = (0..panels).flat_map(|k| nodes_and_weights(place(k), place(k + 1)));
+        nodes.map(|(x, weight)| weight * function(x)).sum::<f64>()
+    };
+    let (mut value, mut change) = (with_panels(1), f64::INFINITY);
+    let mut panels = 2;
+    while panels <= most_panels {
+        let finer = with_panels(panels);
+        let next = (finer - value).abs();
+        if next <= f64::max(TOLERANCE * finer.abs(), negligible) || (next >= 0.5 * change && next <= 1e-9 * finer.abs())
+        {
+            return Some(finer);
+        }
+        (value, change) = (finer, next);
+        panels *= 2;
+    }
+    None
+}
+
+/// The integral of the size of a function, roughly.
+fn size(function: &dyn Fn(f64) -> f64, from: f64, to: f64) -> f64 {
+    let nodes = nodes_and_weights(from, to);
+    nodes.map(|(x, weight)| (weight * function(x)).abs()).sum()
+}
+
+/// The other turning point of a conservative motion released at rest from `start`.
+///
+/// # Errors
+/// See [`PeriodError`].
+///
+/// ```
+/// use lindstedt::numeric::period::{Force, turning_point};
+///
+/// let end = turning_point(&Force::smooth(&|x| x + 0.5 * x * x), 0.0, 0.5)?;
+/// let energy = |x: f64| x * x / 2.0 + x.powi(3) / 6.0;
+/// assert!(end < -0.5 && (energy(end) - energy(0.5)).abs() < 1e-12);
+/// # Ok::<(), lindstedt::numeric::period::PeriodError>(())
+/// ```
+pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64, PeriodError> {
+    /// Steps per window of the search, and how many amplitudes far it goes.
+    const STEPS: usize = 64;
+    const FARTHEST: f64 = 1e10;
+    /// So many amplitudes away it is not the waves on the way that are in question, as over one summit of a pendulum after the other.
+    const FAR: f64 = 100.0;
+    /// How often a stretch on which the force has no integral is halved.
+    const HALVINGS: u32 = 60;
+    /// Enough for a root at an end of a stretch; one with a pole is halved the sooner.
+    const FEW_PANELS: usize = 120;
+    /// About a second; a force of a hundred thousand waves takes less.
+    const MOST_EVALUATIONS: u64 = 20_000_000;
+    let evaluations = Cell::new(0_u64);
+    let value = |x: f64| {
+        evaluations.set(evaluations.get() + 1);
+        force.at(x)
+    };
+    let amplitude = start - equilibrium;
+    let side = amplitude.signum();
+    if force.at(start) * side <= 0.0 || amplitude == 0.0 {
+        return Err(PeriodError::PushedAway {
+            start,
+            equilibrium,
+            range: None,
+        });
+    }
+    if is_symmetric(force, equilibrium, amplitude) {
+        return Ok(equilibrium - amplitude);
+    }
+    // Against the largest energy on the way, errors below the last digit are none.
+    let below = |largest: f64| 0.5 * f64::EPSILON * largest;
+    let gained = |from: f64, to: f64, largest: f64| integral(&value, to, from, below(largest));
+    // Windows of growing length: to the mirror image of the start, as far again, twice as far, ...
+    let (mut x, mut energy, mut largest, mut window) = (start, 0.0, 0.0, 2.0 * amplitude.abs());
+    while (x - equilibrium).abs() < FARTHEST * amplitude.abs() {
+        let from = x;
+        let mut places = force.knots(from, from - side * window);
+        places.extend((1..STEPS).map(|k| from - side * window * k as f64 / STEPS as f64));
+        places.sort_by(|one, other| (side * other).total_cmp(&(side * one)));
+        places.dedup();
+        for pair in places.windows(2) {
+            let mut stretches = where_it_turns(force, side, pair[0], pair[1]);
+            stretches.reverse();
+            let mut halvings = 0;
+            while let Some((here, next)) = stretches.pop() {
+                if evaluations.get() > MOST_EVALUATIONS {
+                    return Err(match (here - equilibrium).abs() > FAR * amplitude.abs() {
+                        true => PeriodError::Escapes {
+                            start,
+                            searched: here,
+                            range: None,
+                        },
+                        false => PeriodError::Waves,
+                    });
+                }
+                let gain = match integral_within(&value, [next, here], below(largest), FEW_PANELS) {
+                    // Towards a pole, by half of the way at a time.
+                    Err(_) if halvings < HALVINGS => {
+                        halvings += 1;
+                        let middle = 0.5 * (here + next);
+                        stretches.extend([(middle, next), (here, middle)]);
+                        continue;
+                    }
+                    gain => gain?,
+                };
+                let after = energy + gain;
+                if after <= 0.0 {
+                    let mut failure = None;
+                    let root = find_root(
+                        |candidate| match gained(here, candidate, largest) {
+                            Ok(gain) => energy + gain,
+                            Err(error) => {
+                                failure = Some(error);
+                                f64::NAN
+                            }
+                        },
+                        here,
+                        next,
+                    );
+                    let end = root.map_err(|error| failure.map_or(error.into(), PeriodError::from))?;
+                    return match (end - equilibrium) * amplitude > 0.0 {
+                        true => Err(PeriodError::OtherWell {
+                            start,
+                            equilibrium,
+                            range: None,
+                        }),
+                        false => Ok(end),
+                    };
+                }
+                energy = after;
+                largest = f64::max(largest, energy);
+            }
+        }
+        x = places[places.len() - 1];
+        window = f64::max(window, (x - equilibrium).abs());
+    }
+    Err(PeriodError::Escapes {
+        start,
+        searched: x,
+        range: None,
+    })
+}
+
+/// Whether the well is symmetric and has a single bottom as far as the amplitude. The mirror image of the start is then the
+/// turning point to the last digit, which no root finder gives near a separatrix.
+fn is_symmetric(force: &Force, equilibrium: f64, amplitude: f64) -> bool {
+    /// The search for a turning point does not pass a place where the force is infinite: there symmetry may be lost in rounding.
+    const ROUNDING: f64 = 1e-12;
+    let infinite = grows_towards_zero(&|y| force.at(equilibrium + y), amplitude);
+    let rounding = if infinite { ROUNDING } else { 0.0 };
+    let mut places: Vec<f64> = (1..=16).map(|k| amplitude * f64::from(k) / 16.0).collect();
+    let knots = force.knots(equilibrium - amplitude, equilibrium + amplitude);
+    places.extend(knots.iter().map(|knot| knot - equilibrium));
+    places.extend(knots.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]) - equilibrium));
+    places.into_iter().filter(|&x| x != 0.0).all(|x| {
+        let (here, there) = (force.at(equilibrium + x), force.at(equilibrium - x));
+        (here + there).abs() <= rounding * here.abs() && here * x.signum() > 0.0
+    })
+}
+
+/// A step cut where the force first pushes the motion back and then on again, so that the kinetic energy has no lowest point
+/// between two ends.
+fn where_it_turns(force: &Force, side: f64, from: f64, to: f64) -> Vec<(f64, f64)> {
+    const SAMPLES: usize = 4;
+    let place = |k: usize| from + (to - from) * k as f64 / SAMPLES as f64;
+    let drives: Vec<bool> = (1..SAMPLES).map(|k| force.at(place(k)) * side > 0.0).collect();
+    if drives.windows(2).all(|pair| pair[0] || !pair[1]) {
+        return vec![(from, to)];
+    }
+    (0..SAMPLES)
+        .map(|k| (place(k), if k + 1 == SAMPLES { to } else { place(k + 1) }))
+        .collect()
+}

@@ -1,0 +1,630 @@
+//! The run itself: step, look for events in the step, restart where the right side switches.
+//!
+//! Only the stepping is the library's: its 0.7.0 accepts a step whose error estimate is not a number, so every step
+//! is checked here and tried again smaller; its event handling does not see two crossings in one step, so ours is
+//! used.
+
+use std::cell::Cell;
+
+use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
+use differential_equations::status::Status;
+use thiserror::Error;
+
+use super::State;
+use super::event::{Action, Event, Watch};
+use super::sample::{Point, Sample, Values};
+use super::scheme::{Scheme, explicit, implicit};
+use super::trajectory::{FRACTIONS, Occurrence, Step, StopReason, TERMS, Trajectory};
+use crate::interrupt::Interrupt;
+
+/// How closely and how long to integrate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Error allowed per step relative to the size of each value.
+    pub relative_tolerance: f64,
+    /// Error allowed per step beside it, in the units of the values: choose it well below their size.
+    pub absolute_tolerance: f64,
+    /// Steps, rejected ones included, after which the run gives up. Each accepted step keeps about 200 bytes.
+    pub maximum_steps: usize,
+    /// Longest step: infinity, unless a right side or an event varies faster than the motion.
+    pub maximum_step: f64,
+    /// Whether the motion has parts of very different speed: an implicit method of lower order then takes longer steps.
+    pub stiff: bool,
+    /// Who may ask the run to stop where it is.
+    pub interrupt: Interrupt,
+}
+
+impl Default for Options {
+    /// Tolerances of 1e-10, 200 000 steps of any length.
+    fn default() -> Self {
+        Self::with_tolerance(1e-10)
+    }
+}
+
+impl Options {
+    /// The same relative and absolute tolerance, the rest as in the default.
+    pub fn with_tolerance(tolerance: f64) -> Self {
+        Self {
+            relative_tolerance: tolerance,
+            absolute_tolerance: tolerance,
+            maximum_steps: 200_000,
+            maximum_step: f64::INFINITY,
+            stiff: false,
+            interrupt: Interrupt::default(),
+        }
+    }
+}
+
+/// A smooth right side and the events to look for while it is in force.
+pub struct Phase<'a, S: Sample = State> {
+    rates: Box<Rates<'a, S>>,
+    events: Vec<Event<'a, S>>,
+}
+
+/// Writes the rates of the values at a time.
+type Rates<'a, S> = dyn Fn(f64, &<S as Sample>::Values, &mut <S as Sample>::Values) + 'a;
+
+impl<'a> Phase<'a> {
+    /// The acceleration g(t, x, v) and the events of this phase.
+    pub fn new(acceleration: impl Fn(f64, f64, f64) -> f64 + 'a, events: Vec<Event<'a>>) -> Self {
+        let rates = Box::new(first_order(acceleration));
+        Self { rates, events }
+    }
+}
+
+/// x'' = g(t, x, v) as x' = v, v' = g.
+fn first_order(acceleration: impl Fn(f64, f64, f64) -> f64) -> impl Fn(f64, &[f64; 2], &mut [f64; 2]) {
+    move |t, &[x, v], rates| *rates = [v, acceleration(t, x, v)]
+}
+
+/// What makes a run impossible from the outset. A run that began keeps what it has, see [`StopReason`].
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum IntegrationError {
+    /// The start or the end time is not a finite number.
+    #[error("the start (t = {t}, x = {x}, v = {v}) and the end time {end_time} must be finite numbers")]
+    NotFinite {
+        /// Time of the start.
+        t: f64,
+        /// Displacement at the start.
+        x: f64,
+        /// Velocity at the start.
+        v: f64,
+        /// End time asked for.
+        end_time: f64,
+    },
+    /// The acceleration has no finite value at the start.
+    #[error("the acceleration has no finite value at the start (t = {t}, x = {x}, v = {v}): start inside its domain")]
+    AccelerationNotFinite {
+        /// Time of the start.
+        t: f64,
+        /// Displacement at the start.
+        x: f64,
+        /// Velocity at the start.
+        v: f64,
+    },
+    /// A value at the start of first-order equations, or the end time, is not a finite number.
+    #[error("the start (t = {start_time}), its values and the end time {end_time} must be finite numbers")]
+    ValuesNotFinite {
+        /// Time of the start.
+        start_time: f64,
+        /// End time asked for.
+        end_time: f64,
+    },
+    /// A rate of first-order equations has no finite value at the start.
+    #[error("rate {index}, counted from 0, has no finite value at the start (t = {t}): start inside its domain")]
+    RateNotFinite {
+        /// Which.
+        index: usize,
+        /// Time of the start.
+        t: f64,
+    },
+    /// The end lies before the start.
+    #[error("the end time {end_time} lies before the start {start_time}: motions are followed forward only")]
+    EndBeforeStart {
+        /// Time of the start.
+        start_time: f64,
+        /// End time asked for.
+        end_time: f64,
+    },
+    /// A tolerance no double-precision run can keep.
+    #[error("the integrator's tolerance must lie between 1e-15 and 0.1, not {0}: 1e-10 is a good choice")]
+    Tolerance(f64),
+    /// A maximum step that is not positive.
+    #[error("the longest step must be positive, not {0}")]
+    MaximumStep(f64),
+    /// A phase that does not exist.
+    #[error("there is no phase {phase}: {count} are given, counted from 0")]
+    UnknownPhase {
+        /// The index asked for.
+        phase: usize,
+        /// How many there are.
+        count: usize,
+    },
+}
+
+/// The motion x'' = acceleration(t, x, v) from `start` to `end_time`, or to the first stopping event.
+///
+/// An [`Action::Switch`] must name phase 0, the only one, and so restarts with a changed state: a rebound.
+///
+/// # Errors
+/// [`IntegrationError`] where the run cannot begin. One that ends early is no error: ask
+/// [`Trajectory::stop_reason`].
+///
+/// ```
+/// use lindstedt::numeric::ode::{Options, State, integrate};
+///
+/// let path = integrate(|_t, x, _v| -x, State { t: 0.0, x: 1.0, v: 0.0 }, 3.0, &[], &Options::default())?;
+/// assert!((path.end().x - 3.0_f64.cos()).abs() < 1e-8);
+/// # Ok::<(), lindstedt::numeric::ode::IntegrationError>(())
+/// ```
+pub fn integrate<'a>(
+    acceleration: impl Fn(f64, f64, f64) -> f64 + 'a,
+    start: State,
+    end_time: f64,
+    events: &[Event<'a>],
+    options: &Options,
+) -> Result<Trajectory, IntegrationError> {
+    let rates = first_order(acceleration);
+    run(&[(&rates, events)], 0, start, end_time, Looks::NOWHERE, options).map_err(|error| of_motion(error, start))
+}
+
+/// The motion through several smooth right sides: begins in phase `first`, goes on as the switches of the events say.
+///
+/// # Errors
+/// As [`integrate`], and [`IntegrationError::UnknownPhase`] where `first` or a switch names a phase that is not
+/// there.
+///
+/// ```
+/// use lindstedt::numeric::ode::{Event, Options, Phase, State, integrate_phases};
+///
+/// // Free fall from a height of 1 until a spring of stiffness 100 is met at x = 0.
+/// let met = Event::switch(|_t, x, _v| x, |state| (1, State { x: 0.0, ..state })).falling();
+/// let fall = Phase::new(|_t, _x, _v| -1.0, vec![met]);
+/// let deepest = Event::stop(|_t, _x, v| v).rising();
+/// let spring = Phase::new(|_t, x, _v| -1.0 - 100.0 * x, vec![deepest]);
+/// let start = State { t: 0.0, x: 1.0, v: 0.0 };
+/// let path = integrate_phases(&[fall, spring], 0, start, 10.0, &Options::default())?;
+/// let depth = -path.end().x;
+/// assert!((50.0 * depth * depth - (1.0 + depth)).abs() < 1e-8); // energy of the spring, work of the weight
+/// # Ok::<(), lindstedt::numeric::ode::IntegrationError>(())
+/// ```
+pub fn integrate_phases(
+    phases: &[Phase],
+    first: usize,
+    start: State,
+    end_time: f64,
+    options: &Options,
+) -> Result<Trajectory, IntegrationError> {
+    let parts: Vec<Part<State>> = phases
+        .iter()
+        .map(|phase| (&*phase.rates as _, phase.events.as_slice()))
+        .collect();
+    run(&parts, first, start, end_time, Looks::NOWHERE, options).map_err(|error| of_motion(error, start))
+}
+
+/// Any first-order equations: `rates` writes y' at the time and the values y that it is given. Otherwise as [`integrate`].
+///
+/// ```
+/// use lindstedt::numeric::ode::{Action, Event, Options, Point, integrate_first_order};
+///
+/// // Euler's equations of a body that turns freely: energy and angular momentum are kept.
+/// let spin = |_t: f64, w: &[f64; 3], rates: &mut [f64; 3]| *rates = [-w[1] * w[2], 2.0 * w[2] * w[0], -w[0] * w[1]];
+/// let start = Point { t: 0.0, y: [0.1, 1.0, 0.2] };
+/// let turned = Event::new(|point: &Point<[f64; 3]>| point.y[1], Action::Record).falling();
+/// let path = integrate_first_order(spin, start, 20.0, &[turned], &Options::with_tolerance(1e-12))?;
+/// let energy = |w: [f64; 3]| 2.0 * w[0] * w[0] + 2.0 * w[1] * w[1] + 2.0 * w[2] * w[2];
+/// assert!(path.samples(100).all(|point| (energy(point.y) - energy(start.y)).abs() < 1e-10));
+/// assert!(!path.occurrences().is_empty());
+/// # Ok::<(), lindstedt::numeric::ode::IntegrationError>(())
+/// ```
+///
+/// # Errors
+/// As [`integrate`].
+pub fn integrate_first_order<'a, Y: Values>(
+    rates: impl Fn(f64, &Y, &mut Y) + 'a,
+    start: Point<Y>,
+    end_time: f64,
+    events: &[Event<'a, Point<Y>>],
+    options: &Options,
+) -> Result<Trajectory<Point<Y>>, IntegrationError> {
+    run(&[(&rates, events)], 0, start, end_time, Looks::NOWHERE, options)
+}
+
+/// As [`integrate_first_order`], with steps that end where they have to.
+///
+/// # Errors
+/// As [`integrate`].
+pub fn integrate_through<'a, Y: Values>(
+    rates: impl Fn(f64, &Y, &mut Y) + 'a,
+    start: Point<Y>,
+    end_time: f64,
+    looks: Looks<Point<Y>>,
+    events: &[Event<'a, Point<Y>>],
+    options: &Options,
+) -> Result<Trajectory<Point<Y>>, IntegrationError> {
+    run(&[(&rates, events)], 0, start, end_time, looks, options)
+}
+
+/// What ends a step beside its error.
+pub struct Looks<'a, S> {
+    /// Times, in order, that no step crosses.
+    pub critical: &'a [f64],
+    /// From a step as a function of its fraction the fraction of it that may be kept; nothing for all of it.
+    pub kept: Option<&'a Kept<'a, S>>,
+}
+
+/// From a step as a function of its fraction the fraction of it that may be kept; `None` for all of it.
+pub type Kept<'a, S> = dyn Fn(&dyn Fn(f64) -> S) -> Option<f64> + 'a;
+
+impl<S> Looks<'_, S> {
+    const NOWHERE: Self = Self {
+        critical: &[],
+        kept: None,
+    };
+}
+
+impl<S> Clone for Looks<'_, S> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S> Copy for Looks<'_, S> {}
+
+/// The error in the words of displacement and velocity.
+fn of_motion(error: IntegrationError, State { t, x, v }: State) -> IntegrationError {
+    match error {
+        IntegrationError::ValuesNotFinite { end_time, .. } => IntegrationError::NotFinite { t, x, v, end_time },
+        IntegrationError::RateNotFinite { .. } => IntegrationError::AccelerationNotFinite { t, x, v },
+        other => other,
+    }
+}
+
+type Part<'r, 'a, S> = (&'r Rates<'r, S>, &'r [Event<'a, S>]);
+
+/// Switches in a row without progress of time (beyond rounding) after which the run is called stalled.
+const MAXIMUM_IDLE_SWITCHES: usize = 16;
+
+fn run<S: Sample>(
+    parts: &[Part<S>],
+    first: usize,
+    start: S,
+    end_time: f64,
+    looks: Looks<S>,
+    options: &Options,
+) -> Result<Trajectory<S>, IntegrationError> {
+    check(&start, end_time, options)?;
+    let unknown = |phase: usize| IntegrationError::UnknownPhase {
+        phase,
+        count: parts.len(),
+    };
+    let &(rates, _) = parts.get(first).ok_or(unknown(first))?;
+    let mut at_start = start.values();
+    rates(start.time(), &start.values(), &mut at_start);
+    if let Some(index) = at_start.as_ref().iter().position(|rate| !rate.is_finite()) {
+        return Err(IntegrationError::RateNotFinite { index, t: start.time() });
+    }
+    let evaluations = Cell::new(0);
+    let mut trajectory = Trajectory {
+        start: start.clone(),
+        end: start,
+        steps: Vec::new(),
+        occurrences: Vec::new(),
+        stop_reason: StopReason::EndReached,
+        evaluations: 0,
+    };
+    let mut phase = first;
+    let mut attempts = 0;
+    let mut idle_switches = 0;
+    loop {
+        let &(rates, events) = parts.get(phase).ok_or(unknown(phase))?;
+        let equations = Counted::<S> {
+            rates,
+            evaluations: &evaluations,
+            non_finite: Cell::new(false),
+        };
+        let begin = trajectory.end.time();
+        let leg = Leg {
+            equations,
+            phase,
+            events,
+            end_time,
+            looks,
+            options,
+        };
+        let end = match options.stiff {
+            false => leg.run(&explicit::<S::Values>(), &mut trajectory, &mut attempts),
+            true => leg.run(&implicit::<S>(), &mut trajectory, &mut attempts),
+        };
+        match end {
+            LegEnd::Stopped(reason) => {
+                trajectory.stop_reason = reason;
+                break;
+            }
+            LegEnd::Switched(next_phase, next) => {
+                let time = trajectory.end.time();
+                let idle = time - begin <= 256.0 * f64::EPSILON * time.abs();
+                idle_switches = if idle { idle_switches + 1 } else { 0 };
+                trajectory.end = S::new(time, &next.values());
+                if !trajectory.end.is_finite() {
+                    trajectory.stop_reason = StopReason::NonFinite { time };
+                    break;
+                }
+                if idle_switches > MAXIMUM_IDLE_SWITCHES {
+                    trajectory.stop_reason = StopReason::SwitchingStalled { time };
+                    break;
+                }
+                phase = next_phase;
+            }
+        }
+    }
+    trajectory.evaluations = evaluations.get();
+    Ok(trajectory)
+}
+
+fn check(start: &impl Sample, end_time: f64, options: &Options) -> Result<(), IntegrationError> {
+    let start_time = start.time();
+    if !(start.is_finite() && end_time.is_finite()) {
+        return Err(IntegrationError::ValuesNotFinite { start_time, end_time });
+    }
+    if end_time < start_time {
+        return Err(IntegrationError::EndBeforeStart { start_time, end_time });
+    }
+    if !(1e-15..=0.1).contains(&options.relative_tolerance) {
+        return Err(IntegrationError::Tolerance(options.relative_tolerance));
+    }
+    // An amplitude may be tiny, so the absolute tolerance has no lower limit but zero.
+    if !(f64::MIN_POSITIVE..=0.1).contains(&options.absolute_tolerance) {
+        return Err(IntegrationError::Tolerance(options.absolute_tolerance));
+    }
+    if options.maximum_step.is_nan() || options.maximum_step <= 0.0 {
+        return Err(IntegrationError::MaximumStep(options.maximum_step));
+    }
+    Ok(())
+}
+
+/// The right side, counting its evaluations and remembering whether one of them was not finite.
+struct Counted<'r, S: Sample> {
+    rates: &'r Rates<'r, S>,
+    evaluations: &'r Cell<usize>,
+    non_finite: Cell<bool>,
+}
+
+impl<S: Sample> ODE<f64, S::Values> for Counted<'_, S> {
+    fn diff(&self, t: f64, values: &S::Values, derivative: &mut S::Values) {
+        (self.rates)(t, values, derivative);
+        self.evaluations.set(self.evaluations.get() + 1);
+        if !derivative.as_ref().iter().all(|rate| rate.is_finite()) {
+            self.non_finite.set(true);
+        }
+    }
+}
+
+/// The part of a run with one right side.
+struct Leg<'r, 'a, S: Sample> {
+    equations: Counted<'r, S>,
+    phase: usize,
+    events: &'r [Event<'a, S>],
+    end_time: f64,
+    looks: Looks<'r, S>,
+    options: &'r Options,
+}
+
+enum LegEnd<S> {
+    Stopped(StopReason),
+    Switched(usize, S),
+}
+
+impl<S: Sample> Leg<'_, '_, S> {
+    fn run<M: OrdinaryNumericalMethod<f64, S::Values>>(
+        &self,
+        scheme: &Scheme<M, S::Values>,
+        trajectory: &mut Trajectory<S>,
+        attempts: &mut usize,
+    ) -> LegEnd<S> {
+        let mut state = trajectory.end.clone();
+        let Some(mut solver) = self.solver(scheme, &state, 0.0) else {
+            return LegEnd::Stopped(self.failure(state.time()));
+        };
+        let mut watches = vec![Watch::default(); self.events.len()];
+        let mut first = true;
+        loop {
+            let time = state.time();
+            let remaining = self.end_time - time;
+            if remaining <= 2.0 * f64::EPSILON * self.end_time.abs() {
+                trajectory.end = S::new(self.end_time, &trajectory.end.values());
+                return LegEnd::Stopped(StopReason::EndReached);
+            }
+            if let Some(reason) = self.given_up(time, *attempts) {
+                return LegEnd::Stopped(reason);
+            }
+            *attempts += 1;
+            let allowed = self.options.maximum_step.min(remaining).min(self.to_critical(time));
+            let wanted = solver.h().min(allowed);
+            solver.set_h(wanted);
+            self.equations.non_finite.set(false);
+            let outcome = solver.step(&self.equations);
+            if self.equations.non_finite.get() {
+                // The step reached outside the domain of the equation: try again, a fifth as long.
+                let shorter = 0.2 * wanted;
+                if time + shorter <= time {
+                    return LegEnd::Stopped(StopReason::NonFinite { time });
+                }
+                match self.solver(scheme, &state, shorter) {
+                    Some(smaller) => solver = smaller,
+                    None => return LegEnd::Stopped(self.failure(time)),
+                }
+                continue;
+            }
+            if outcome.is_err() {
+                return LegEnd::Stopped(StopReason::StepTooSmall { time });
+            }
+            if matches!(solver.status(), Status::RejectedStep) {
+                if time + solver.h() <= time {
+                    return LegEnd::Stopped(StopReason::StepTooSmall { time });
+                }
+                continue;
+            }
+            let Some((step, next)) = self.accepted(scheme, &mut solver, &state) else {
+                return LegEnd::Stopped(StopReason::NonFinite { time });
+            };
+            let kept = self
+                .looks
+                .kept
+                .and_then(|kept| kept(&|fraction| step.state_at(fraction)))
+                // A step that the clock does not notice would be taken over and over.
+                .filter(|kept| kept * step.length > 4.0 * f64::EPSILON * time.abs());
+            if let Some(kept) = kept {
+                // The whole step would go past something: not so far, then.
+                match self.solver(scheme, &state, kept * step.length) {
+                    Some(shorter) => solver = shorter,
+                    None => return LegEnd::Stopped(self.failure(time)),
+                }
+                continue;
+            }
+            let moved = first.then(|| self.moved(&state, step.length));
+            let Some(happenings) = self.happenings(&step, &mut watches, moved.as_ref()) else {
+                return LegEnd::Stopped(StopReason::NonFinite { time });
+            };
+            trajectory.steps.push(step);
+            trajectory.end = next.clone();
+            if let Some(end) = self.recorded(happenings, trajectory) {
+                return end;
+            }
+            state = next;
+            first = false;
+        }
+    }
+
+    /// How far the next critical time is, farther than rounding.
+    fn to_critical(&self, time: f64) -> f64 {
+        let beyond = time + 4.0 * f64::EPSILON * time.abs();
+        let next = self.looks.critical.partition_point(|critical| *critical <= beyond);
+        self.looks
+            .critical
+            .get(next)
+            .map_or(f64::INFINITY, |critical| critical - time)
+    }
+
+    /// Whether the steps are used up, or somebody wants it to end.
+    fn given_up(&self, time: f64, attempts: usize) -> Option<StopReason> {
+        if attempts >= self.options.maximum_steps {
+            return Some(StopReason::MaximumSteps { time });
+        }
+        let asked = self.options.interrupt.is_requested();
+        asked.then_some(StopReason::Interrupted { time })
+    }
+
+    /// Keeps what happened in a step, up to the first that ends the leg: then the path ends there, and this is how.
+    fn recorded(&self, happenings: Vec<(S, usize, bool)>, trajectory: &mut Trajectory<S>) -> Option<LegEnd<S>> {
+        for (happening, event, rising) in happenings {
+            trajectory.occurrences.push(Occurrence {
+                phase: self.phase,
+                event,
+                state: happening.clone(),
+                rising,
+            });
+            match &self.events[event].action {
+                Action::Record => {}
+                Action::Stop => {
+                    trajectory.end = happening;
+                    return Some(LegEnd::Stopped(StopReason::Event {
+                        phase: self.phase,
+                        event,
+                    }));
+                }
+                Action::Switch(next_state) => {
+                    trajectory.end = happening.clone();
+                    let (phase, changed) = next_state(happening);
+                    return Some(LegEnd::Switched(phase, changed));
+                }
+            }
+        }
+        None
+    }
+
+    /// A fresh solver at this state, with this first step (0: of its own choice).
+    fn solver<M: OrdinaryNumericalMethod<f64, S::Values>>(
+        &self,
+        scheme: &Scheme<M, S::Values>,
+        state: &S,
+        first_step: f64,
+    ) -> Option<M> {
+        let (time, values) = (state.time(), state.values());
+        let remaining = self.end_time - time;
+        let longest = self.options.maximum_step.min(remaining);
+        if longest <= 0.0 {
+            // Nothing left to do: the solver will not be asked for a step.
+            return Some((scheme.fresh)(self.options, 0.0, f64::INFINITY));
+        }
+        self.equations.non_finite.set(false);
+        self.equations.diff(time, &values, &mut values.clone());
+        if self.equations.non_finite.get() {
+            return None;
+        }
+        for step in [first_step, 1e-6 * longest] {
+            let mut solver = (scheme.fresh)(self.options, step.min(longest), longest);
+            // The trial steps by which a first step is chosen may leave the domain: then a short one is prescribed.
+            if solver.init(&self.equations, time, self.end_time, &values).is_ok() && solver.h() > 0.0 {
+                return Some(solver);
+            }
+        }
+        None
+    }
+
+    fn failure(&self, time: f64) -> StopReason {
+        if self.equations.non_finite.get() {
+            StopReason::NonFinite { time }
+        } else {
+            StopReason::StepTooSmall { time }
+        }
+    }
+
+    /// The start of a step, moved on for so long at the rates that it has: what is at rest stays where it is.
+    fn moved(&self, start: &S, length: f64) -> S {
+        let mut values = start.values();
+        let mut rates = values.clone();
+        (self.equations.rates)(start.time(), &values, &mut rates);
+        for (value, rate) in values.as_mut().iter_mut().zip(rates.as_ref()) {
+            *value += length * rate;
+        }
+        S::new(start.time() + length, &values)
+    }
+
+    /// The step just taken, as polynomials, and the state at its end.
+    fn accepted<M: OrdinaryNumericalMethod<f64, S::Values>>(
+        &self,
+        scheme: &Scheme<M, S::Values>,
+        solver: &mut M,
+        start: &S,
+    ) -> Option<(Step<S>, S)> {
+        let (from, to) = (solver.t_prev(), solver.t());
+        let length = to - from;
+        let mut values: [S::Values; TERMS] = std::array::from_fn(|_| start.values());
+        for (values, fraction) in values.iter_mut().zip(FRACTIONS.iter()) {
+            *values = (scheme.inside)(solver, (from + fraction * length).min(to))?;
+        }
+        let next = S::new(to, solver.y());
+        let finite = |values: &S::Values| values.as_ref().iter().all(|value| value.is_finite());
+        let finite = next.is_finite() && values.iter().all(finite);
+        finite.then(|| (Step::new(self.phase, start.clone(), length, values), next))
+    }
+
+    /// The events inside the step in the order of time, as states, and whether they rise; `None` where an event function is not
+    /// finite.
+    fn happenings(&self, step: &Step<S>, watches: &mut [Watch], moved: Option<&S>) -> Option<Vec<(S, usize, bool)>> {
+        let mut found = Vec::new();
+        for (index, (event, watch)) in self.events.iter().zip(watches).enumerate() {
+            let crossings = watch.crossings(step, event, moved).ok()?;
+            found.extend(
+                crossings
+                    .into_iter()
+                    .map(|(fraction, rising)| (step.state_at(fraction), index, rising)),
+            );
+        }
+        // A stable sort: of two events at the same time the one listed first comes first.
+        found.sort_by(|one, other| one.0.time().total_cmp(&other.0.time()));
+        Some(found)
+    }
+}

@@ -1,0 +1,63 @@
+//! Independent pieces of work on all threads of the current pool; one after the other without the feature `parallel`.
+//!
+//! What comes back is in the order of the pieces, whatever the number of threads.
+
+use std::sync::{Mutex, PoisonError};
+
+/// What `work` makes of each item, in their order.
+pub fn each<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec<T> {
+    let results: Vec<Mutex<Option<T>>> = items.iter().map(|_| Mutex::new(None)).collect();
+    run(items.len(), &|number| {
+        let result = work(&items[number]);
+        *results[number].lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
+    });
+    let results = results.into_iter();
+    results
+        .filter_map(|result| result.into_inner().unwrap_or_else(PoisonError::into_inner))
+        .collect()
+}
+
+/// Every number up to this one; a function of its own, so that it is built once for all kinds of work.
+fn run(count: usize, work: &(dyn Fn(usize) + Sync)) {
+    #[cfg(feature = "parallel")]
+    rayon::iter::ParallelIterator::for_each(rayon::iter::IntoParallelIterator::into_par_iter(0..count), work);
+    #[cfg(not(feature = "parallel"))]
+    (0..count).for_each(work);
+}
+
+/// How many threads there are.
+pub fn threads() -> usize {
+    #[cfg(feature = "parallel")]
+    return rayon::current_num_threads();
+    #[cfg(not(feature = "parallel"))]
+    return 1;
+}
+
+/// Work in a pool of so many threads; in the current one where no other can be made.
+#[cfg(feature = "parallel")]
+pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool.install(work),
+        Err(_) => work(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_keep_their_order() {
+        let items: Vec<usize> = (0..1000).collect();
+        let expected: Vec<usize> = items.iter().map(|item| item * item).collect();
+        assert_eq!(each(&items, |item| item * item), expected);
+        assert_eq!(each(&[] as &[usize], |item| *item), Vec::<usize>::new());
+        assert!(threads() > 0);
+    }
+
+    #[cfg(feature = "parallel")]
+    #[test]
+    fn a_pool_has_its_own_threads() {
+        assert_eq!(on_threads(3, threads), 3);
+    }
+}

@@ -1,0 +1,18 @@
+//! Series: Taylor expansions of a force, Fourier series in `theta = omega t`, the singularities of long power series.
+//!
+//! In: an expression, an order. Out: coefficients of any ring, order by order, none computed twice.
+//!
+//! Five names to know: [`series::FourierSeries`]; [`series::taylor`], the expansion of an expression; [`series::recurrence`], the
+//! same as recurrences of numbers; [`series::singularity`], where a long series ceases to converge; [`series::terms`], sums as they
+//! are written.
+
+#![warn(missing_docs)]
+
+#[doc(no_inline)]
+pub use lindstedt_expr::{decimal, exact, expr, symbol, values};
+#[doc(no_inline)]
+pub use lindstedt_numeric::{interrupt, parallel};
+
+pub mod series;
+
+pub use symbol::Symbol;

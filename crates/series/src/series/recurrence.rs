@@ -1,0 +1,534 @@
+//! An expression as a list of recurrences for its Taylor coefficients, each part once.
+//!
+//! In: the names of the variables, numbers for every other symbol, expressions. Out: a [`Tape`] that computes the series of each
+//! expression, one order beyond those of the variables given so far, so that a differential equation can feed its rates back; or,
+//! by [`numeric_taylor`], the series in one variable.
+//!
+//! References: A. Griewank, A. Walther, *Evaluating Derivatives*, 2nd ed., SIAM 2008, chapter 13; E. Hairer, S. P. Norsett,
+//! G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., section I.8. The recurrences themselves are in [`super::tape`].
+
+use std::collections::{BTreeMap, HashMap};
+
+use num_traits::{Signed, ToPrimitive};
+
+use crate::exact::Rational;
+use crate::exact::rational::to_f64;
+use crate::expr::{Expr, Function, Node};
+use crate::symbol::Symbol;
+
+use super::guard::Guards;
+use super::tape::{Corner, Operation, Tape};
+
+/// Why an expression has no recurrence.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecurrenceError {
+    /// A name without a value.
+    #[error("`{0}` is neither a variable nor a number")]
+    Unknown(Symbol),
+    /// A function of answers, without a recurrence.
+    #[error("`{0}` cannot be part of an equation: it occurs in answers alone")]
+    Function(&'static str),
+}
+
+/// A tape in the making.
+///
+/// A series is named by its place: the variables come first, in their order; [`add`](Self::add) says where the others are.
+#[derive(Clone, Debug)]
+pub struct Recurrences {
+    tape: Tape,
+    variables: Vec<Symbol>,
+    numbers: BTreeMap<Symbol, f64>,
+    known: HashMap<Expr, usize>,
+    products: HashMap<(usize, usize), usize>,
+    slopes: HashMap<usize, usize>,
+    outputs: Vec<usize>,
+    /// Sine and cosine of a series, or their hyperbolic sisters: who has one has the other.
+    waves: HashMap<(usize, bool), [usize; 2]>,
+    /// The guards of the corners of the tape, in their order.
+    guards: Guards,
+}
+
+/// The real root of an odd degree: the sign of the base is kept, or lost in an even power.
+fn odd(base: f64, exponent: f64) -> f64 {
+    base.abs().powf(exponent).copysign(base)
+}
+
+fn even(base: f64, exponent: f64) -> f64 {
+    base.abs().powf(exponent)
+}
+
+impl Recurrences {
+    /// Series up to `s^degree` in these variables, each with the order beyond which it is zero, if it is: 0 for a parameter, 1 for
+    /// time. `numbers` has the value of every other symbol.
+    pub fn new(variables: &[(Symbol, Option<usize>)], numbers: &BTreeMap<Symbol, f64>, degree: usize) -> Self {
+        let mut tape = Tape::new(degree);
+        for (_, degree) in variables {
+            tape.given(*degree);
+        }
+        Self {
+            tape,
+            variables: variables.iter().map(|(name, _)| *name).collect(),
+            numbers: numbers.clone(),
+            known: HashMap::new(),
+            products: HashMap::new(),
+            slopes: HashMap::new(),
+            outputs: vec![],
+            waves: HashMap::new(),
+            guards: Guards::new(numbers),
+        }
+    }
+
+    /// Adds an expression; answers the place of its series.
+    ///
+    /// # Errors
+    /// A symbol without a value, a function without a recurrence.
+    pub fn add(&mut self, expression: &Expr) -> Result<usize, RecurrenceError> {
+        let place = expression.fold(|expr, children: &[usize]| self.node(expr, children))?;
+        self.outputs.push(place);
+        Ok(place)
+    }
+
+    /// Lets this name stand for what is at a place.
+    pub(super) fn define(&mut self, name: Symbol, place: usize) {
+        self.known.insert(Expr::symbol(name.name()), place);
+    }
+
+    /// What computes the series of all that was added.
+    pub fn into_tape(mut self) -> Tape {
+        self.tape.keep_only(&self.outputs);
+        self.tape
+    }
+
+    fn emit(&mut self, operation: Operation) -> usize {
+        self.tape.emit(operation)
+    }
+
+    fn constant(&mut self, value: f64) -> usize {
+        let place = self.tape.given(Some(0));
+        self.tape.set(place, 0, value);
+        place
+    }
+
+    fn multiply(&mut self, one: usize, other: usize) -> usize {
+        let key = (one.min(other), one.max(other));
+        if let Some(place) = self.products.get(&key) {
+            return *place;
+        }
+        // The shorter series first, and of two long ones the one computed later: its last coefficient is needed last.
+        let (short, long) = match self.tape.degree(key.0) < self.tape.degree(key.1) {
+            true => key,
+            false => (key.1, key.0),
+        };
+        let place = match self.tape.is_number(short) {
+            true => self.emit(Operation::Sum([(short, long)].into())),
+            false => self.emit(Operation::Multiply(short, long, self.tape.degree(short))),
+        };
+        self.products.insert(key, place);
+        place
+    }
+
+    /// A sum of series, each times a factor.
+    fn weighted(&mut self, terms: &[(f64, usize)]) -> usize {
+        let terms = terms
+            .iter()
+            .map(|(factor, place)| (self.constant(*factor), *place))
+            .collect();
+        self.emit(Operation::Sum(terms))
+    }
+
+    fn scale(&mut self, factor: f64, place: usize) -> usize {
+        self.weighted(&[(factor, place)])
+    }
+
+    fn slope(&mut self, mut of: usize) -> usize {
+        // A number beside it makes no difference.
+        while let Operation::Sum(terms) = self.tape.operation(of) {
+            let mut changing = terms.iter().filter(|(_, place)| !self.tape.is_number(*place));
+            match (changing.next(), changing.next()) {
+                (Some((weight, place)), None) if self.tape.is_one(*weight) => of = *place,
+                _ => break,
+            }
+        }
+        if let Some(place) = self.slopes.get(&of) {
+            return *place;
+        }
+        let place = self.emit(Operation::Slope(of));
+        self.slopes.insert(of, place);
+        place
+    }
+
+    fn node(&mut self, expr: &Expr, children: &[usize]) -> Result<usize, RecurrenceError> {
+        if let Some(place) = self.known.get(expr) {
+            return Ok(*place);
+        }
+        let place = match (expr.node(), children) {
+            (Node::Number(number), _) => self.constant(to_f64(number)),
+            (Node::Pi, _) => self.constant(std::f64::consts::PI),
+            (Node::Symbol(symbol), _) => self.symbol(*symbol)?,
+            (Node::Sum(_), _) => self.sum(children),
+            (Node::Product(coefficient, factors), _) => self.product(coefficient, factors, children),
+            (Node::Power(_, exponent), [base, exponent_place]) => match exponent.as_number() {
+                Some(exponent) => self.power(*base, exponent),
+                None => {
+                    let logarithm = self.quotient(*base, *base, 1.0, f64::ln);
+                    let product = self.multiply(*exponent_place, logarithm);
+                    self.exponential(product)
+                }
+            },
+            (Node::Function(function, arguments), [first, ..]) => {
+                let second = children.get(1).copied().unwrap_or(*first);
+                match self.corner(*function, arguments, [*first, second]) {
+                    Some(place) => place,
+                    None => self.function(*function, *first)?,
+                }
+            }
+            (Node::Power(..) | Node::Function(..), _) => self.constant(f64::NAN),
+        };
+        self.known.insert(expr.clone(), place);
+        Ok(place)
+    }
+
+    fn symbol(&mut self, symbol: Symbol) -> Result<usize, RecurrenceError> {
+        if let Some(place) = self.variables.iter().position(|variable| *variable == symbol) {
+            return Ok(place);
+        }
+        match self.numbers.get(&symbol) {
+            Some(number) => Ok(self.constant(*number)),
+            None => Err(RecurrenceError::Unknown(symbol)),
+        }
+    }
+
+    /// Terms that are a number times a series are taken apart: a sum is one operation.
+    fn sum(&mut self, places: &[usize]) -> usize {
+        let mut terms = Vec::with_capacity(places.len());
+        for place in places {
+            match self.tape.operation(*place) {
+                Operation::Sum(inner) if inner.len() == 1 => terms.extend(inner.iter().copied()),
+                _ => terms.push((self.constant(1.0), *place)),
+            }
+        }
+        // What was computed last is needed last.
+        terms.sort_by_key(|(_, place)| *place);
+        self.emit(Operation::Sum(terms.into()))
+    }
+
+    fn product(&mut self, coefficient: &Rational, factors: &[Expr], places: &[usize]) -> usize {
+        // A step gates the others: where it is zero they need no value.
+        let is_gate = |expr: &Expr| matches!(expr.node(), Node::Function(Function::Step, _));
+        let open = factors.iter().zip(places).filter(|(factor, _)| !is_gate(factor));
+        // Numbers first and by themselves: what changes may be shared with another product.
+        let (numbers, changing): (Vec<usize>, Vec<usize>) = open
+            .map(|(_, place)| *place)
+            .partition(|place| self.tape.is_number(*place));
+        let mut of = |places: Vec<usize>| {
+            places
+                .into_iter()
+                .reduce(|product, place| self.multiply(product, place))
+        };
+        let parts = [of(numbers), of(changing)];
+        let product = parts
+            .into_iter()
+            .flatten()
+            .reduce(|number, changing| self.multiply(number, changing));
+        let coefficient = to_f64(coefficient);
+        let mut product = match product {
+            None => self.constant(coefficient),
+            Some(product) if coefficient == 1.0 => product,
+            Some(product) => self.scale(coefficient, product),
+        };
+        for (_, place) in factors.iter().zip(places).filter(|(factor, _)| is_gate(factor)) {
+            if let Operation::Choose {
+                corner,
+                positive,
+                negative,
+            } = *self.tape.operation(*place)
+            {
+                product = self.emit(Operation::Choose {
+                    corner,
+                    positive: positive.map(|_| product),
+                    negative: negative.map(|_| product),
+                });
+            }
+        }
+        product
+    }
+
+    fn power(&mut self, base: usize, exponent: &Rational) -> usize {
+        let whole = exponent.is_integer().then(|| exponent.numer().abs().to_u64()).flatten();
+        if let Some(mut left) = whole {
+            let (mut square, mut result) = (base, None);
+            while left > 0 {
+                if left % 2 == 1 {
+                    result = Some(match result {
+                        None => square,
+                        Some(result) => self.multiply(result, square),
+                    });
+                }
+                left /= 2;
+                if left > 0 {
+                    square = self.multiply(square, square);
+                }
+            }
+            let one = self.constant(1.0);
+            let result = result.unwrap_or(one);
+            return match exponent.is_negative() {
+                true => self.emit(Operation::Divide(one, result, self.tape.degree(result))),
+                false => result,
+            };
+        }
+        let first = match (exponent.denom().is_odd(), exponent.numer().is_odd()) {
+            (true, true) => odd,
+            (true, false) => even,
+            (false, _) => f64::powf,
+        };
+        self.emit(Operation::Power {
+            base,
+            exponent: to_f64(exponent),
+            first,
+        })
+    }
+
+    /// `y' = u' g`, where `g` is the place that this many operations come behind `y`.
+    fn integral(&mut self, of: usize, behind: usize, first: fn(f64) -> f64) -> usize {
+        let slope = self.slope(of);
+        self.emit(Operation::Integral {
+            of,
+            slope,
+            degree: self.tape.degree(slope),
+            rate: self.tape.size() + behind,
+            first,
+        })
+    }
+
+    /// `y' = u'/v`, times a sign.
+    fn quotient(&mut self, of: usize, over: usize, sign: f64, first: fn(f64) -> f64) -> usize {
+        let slope = self.slope(of);
+        let place = self.tape.size();
+        self.emit(Operation::Quotient {
+            of,
+            slope,
+            own: place + 1,
+            over,
+            sign,
+            first,
+        });
+        self.slope(place);
+        place
+    }
+
+    fn exponential(&mut self, of: usize) -> usize {
+        self.integral(of, 0, f64::exp)
+    }
+
+    /// Sine and cosine, each the rate of the other, or their hyperbolic sisters.
+    fn waves(&mut self, of: usize, hyperbolic: bool) -> [usize; 2] {
+        if let Some(places) = self.waves.get(&(of, hyperbolic)) {
+            return *places;
+        }
+        let first: [fn(f64) -> f64; 2] = match hyperbolic {
+            true => [f64::sinh, f64::cosh],
+            false => [f64::sin, f64::cos],
+        };
+        let sign = if hyperbolic { 1.0 } else { -1.0 };
+        let slope = self.slope(of);
+        let place = self.emit(Operation::Waves {
+            of,
+            slope,
+            degree: self.tape.degree(slope),
+            sign,
+            first,
+        });
+        let places = [place, self.emit(Operation::SecondWave)];
+        self.waves.insert((of, hyperbolic), places);
+        places
+    }
+
+    /// `y' = u' (1 + sign*y^2)`: tangents.
+    fn tangent(&mut self, of: usize, sign: f64, first: fn(f64) -> f64) -> usize {
+        let (one, sign) = (self.constant(1.0), self.constant(sign));
+        let tangent = self.integral(of, 2, first);
+        let square = self.emit(Operation::Multiply(tangent, tangent, usize::MAX));
+        self.emit(Operation::Sum([(one, one), (sign, square)].into()));
+        tangent
+    }
+
+    /// `1 + sign*u^2`.
+    fn one_and_square(&mut self, of: usize, sign: f64) -> usize {
+        let one = self.constant(1.0);
+        let square = self.multiply(of, of);
+        self.weighted(&[(1.0, one), (sign, square)])
+    }
+
+    /// `y' = +-u'/(1 - u^2)^(1/2)`: inverse sine and cosine.
+    fn inverse_wave(&mut self, of: usize, sign: f64, first: fn(f64) -> f64) -> usize {
+        let base = self.one_and_square(of, -1.0);
+        let root = self.emit(Operation::Power {
+            base,
+            exponent: 0.5,
+            first: f64::powf,
+        });
+        self.quotient(of, root, sign, first)
+    }
+
+    /// One of two series, by the sign of an argument, whose series is at a place.
+    fn choose(&mut self, argument: &Expr, place: usize, sides: [Option<usize>; 2]) -> usize {
+        let guard = self.guards.find_or_add(argument);
+        if guard.is_new {
+            self.tape.corners.push(Corner {
+                argument: place,
+                side: 1.0,
+            });
+        }
+        let [positive, negative] = match guard.is_aligned {
+            true => sides,
+            false => [sides[1], sides[0]],
+        };
+        self.emit(Operation::Choose {
+            corner: guard.index,
+            positive,
+            negative,
+        })
+    }
+
+    /// A function with a corner, by its arguments and the places of their series; `None` for any other.
+    fn corner(&mut self, function: Function, arguments: &[Expr], [u, v]: [usize; 2]) -> Option<usize> {
+        let [first, ..] = arguments else { return None };
+        Some(match function {
+            Function::Absolute => {
+                let minus = self.scale(-1.0, u);
+                self.choose(first, u, [Some(u), Some(minus)])
+            }
+            Function::Sign => {
+                let (one, minus) = (self.constant(1.0), self.constant(-1.0));
+                self.choose(first, u, [Some(one), Some(minus)])
+            }
+            Function::Step => {
+                let one = self.constant(1.0);
+                self.choose(first, u, [Some(one), None])
+            }
+            Function::Maximum | Function::Minimum => {
+                let difference = self.weighted(&[(1.0, u), (-1.0, v)]);
+                let sides = match function {
+                    Function::Maximum => [Some(u), Some(v)],
+                    _ => [Some(v), Some(u)],
+                };
+                self.choose(&(first - arguments.get(1)?), difference, sides)
+            }
+            _ => return None,
+        })
+    }
+
+    fn function(&mut self, function: Function, u: usize) -> Result<usize, RecurrenceError> {
+        Ok(match function {
+            Function::Sin => self.waves(u, false)[0],
+            Function::Cos => self.waves(u, false)[1],
+            Function::Sinh => self.waves(u, true)[0],
+            Function::Cosh => self.waves(u, true)[1],
+            Function::Tan => self.tangent(u, 1.0, f64::tan),
+            Function::Tanh => self.tangent(u, -1.0, f64::tanh),
+            Function::Exp => self.exponential(u),
+            Function::Log => self.quotient(u, u, 1.0, f64::ln),
+            Function::Atan => {
+                let over = self.one_and_square(u, 1.0);
+                self.quotient(u, over, 1.0, f64::atan)
+            }
+            Function::Asin => self.inverse_wave(u, 1.0, f64::asin),
+            Function::Acos => self.inverse_wave(u, -1.0, f64::acos),
+            special => return Err(RecurrenceError::Function(special.name())),
+        })
+    }
+}
+
+/// The coefficients of `s^0` to `s^degree` of an expression with `coordinate = centre + scale*s` and no other symbol; `None`
+/// where it is not analytic there, contains another symbol, or a coefficient is out of range.
+///
+/// ```
+/// use lindstedt::{expr::parse_expression, series::numeric_taylor};
+/// let root = parse_expression("sqrt(x)").unwrap();
+/// // sqrt(4 + 8 s) = 2 + 2 s - s^2 + ...
+/// assert_eq!(numeric_taylor(&root, "x".into(), 4.0, 8.0, 2), Some(vec![2.0, 2.0, -1.0]));
+/// assert_eq!(numeric_taylor(&root, "x".into(), 0.0, 1.0, 2), None);
+/// ```
+pub fn numeric_taylor(expr: &Expr, coordinate: Symbol, centre: f64, scale: f64, degree: usize) -> Option<Vec<f64>> {
+    let mut recurrences = Recurrences::new(&[(coordinate, Some(1))], &BTreeMap::new(), degree);
+    let place = recurrences.add(expr).ok()?;
+    let mut tape = recurrences.into_tape();
+    tape.set(0, 0, centre);
+    if degree > 0 {
+        tape.set(0, 1, scale);
+    }
+    // The argument of one corner may depend on the side of another.
+    for _ in 0..=tape.corners().count() {
+        (0..=degree).for_each(|order| tape.compute(order));
+        if !tape.take_sides() {
+            break;
+        }
+    }
+    // On a corner itself there is no series.
+    let series = tape.series(place);
+    let analytic = tape.corners().all(|(argument, _)| argument[0] != 0.0);
+    (analytic && series.iter().all(|value| value.is_finite())).then(|| series.to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::{CompiledFunction, parse_expression};
+
+    #[test]
+    fn the_series_is_the_function() {
+        let x: Symbol = "x".into();
+        for text in [
+            "x^3 - 2*x + 1/x^2",
+            "sin(x)*cos(2*x) + tan(x)",
+            "sinh(x) - cosh(x)*tanh(x)",
+            "exp(-x^2) + log(1 + x)*sqrt(2 + x)",
+            "asin(x/3) + acos(x/4)*atan(x)",
+            "abs(x - 3) + sgn(x)*max(x, x^2/100) + min(x, 7) + H(x)*x + H(x - 3)*(x - 3)^(3/2)",
+            "(1 + x)^x + x^(7/3) + (-x)^(1/3) + (-x)^(2/3) + asin(sin(x)) + 3",
+        ] {
+            let expression = parse_expression(text).expect(text);
+            let function = CompiledFunction::new(&expression, &[x]).expect(text);
+            let series = numeric_taylor(&expression, x, 0.7, 0.1, 40).expect(text);
+            for s in [-0.5_f64, 0.3, 0.9] {
+                let sum = series.iter().rev().fold(0.0, |sum, c| sum * s + c);
+                let exact = function.call(&[0.7 + 0.1 * s]);
+                assert!(
+                    (sum - exact).abs() < 1e-13 * (1.0 + exact.abs()),
+                    "{text} at {s}: {sum} {exact}"
+                );
+            }
+        }
+        // Among them what has no value, so that no side can be taken.
+        for text in [
+            "abs(x)",
+            "x^(1/3)",
+            "log(x)",
+            "1/x",
+            "k*x",
+            "x*H(log(x) + 3)",
+            "max(x, 1/x)",
+        ] {
+            let expression = parse_expression(text).expect(text);
+            assert_eq!(numeric_taylor(&expression, x, 0.0, 1.0, 4), None, "{text}");
+        }
+        // Powers beyond the degree, where the base is zero.
+        let high = parse_expression("x + x^10000").expect("powers");
+        assert_eq!(numeric_taylor(&high, x, 0.0, 1.0, 2), Some(vec![0.0, 1.0, 0.0]));
+    }
+
+    /// What occurs twice is computed once, and sine and cosine come together.
+    #[test]
+    fn each_part_is_computed_once() {
+        let count = |texts: &[&str]| {
+            let mut recurrences = Recurrences::new(&[("x".into(), None)], &BTreeMap::new(), 1);
+            for text in texts {
+                recurrences.add(&parse_expression(text).expect(text)).expect(text);
+            }
+            recurrences.tape.size()
+        };
+        assert_eq!(count(&["sin(x)"]), count(&["sin(x)", "cos(x)", "sin(x)"]));
+        assert_eq!(count(&["sgn(x)*exp(x^2)", "exp(x^2)"]), count(&["sgn(x)*exp(x^2)"]));
+    }
+}

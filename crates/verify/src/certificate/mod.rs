@@ -1,0 +1,352 @@
+//! Certificates: a proof beside a closed form.
+//!
+//! In: an oscillator whose energy is conserved, an answer of any method to it, and numbers. Out: a [`Certificate`], from which
+//! anybody can prove in exact arithmetic that there is exactly one motion `x(t) = X(omega t)` with this start near a refined one,
+//! and [`Certified`], what that says of the formula: its frequency is off by no less than this and no more than that, its motion
+//! likewise, and how far the two drift apart in any time.
+//!
+//! ```text
+//! x'' + f(x) = 0,  x(0) = A,  x'(0) = 0:      |x(t) - x~(t)| <= E + max|X~'| |omega - omega~| |t|    for all t
+//! ```
+//!
+//! Limit cycles of `x'' + g(x) x' + h(x) = 0`, which have an amplitude and a phase of their own, and steady motions of such an equation with a
+//! drive have a [`DampedCertificate`] and a theorem in `damped/`.
+//!
+//! How the refined motion was found is of no importance (`candidate.rs`: Newton's iteration): what is proved rests on
+//! `theorem.rs` and what it is computed with, `force.rs`, `fourier_series.rs` and balls. A certificate that fails says nothing
+//! about the formula.
+
+mod approximate_inverse;
+mod candidate;
+mod damped;
+mod force;
+mod formula;
+mod fourier_series;
+mod impact;
+mod law;
+mod radii_polynomial;
+mod theorem;
+mod validity;
+
+use num_traits::{Signed as _, Zero as _};
+
+pub use candidate::{NotCertified, certify, certify_motion};
+pub use damped::{DampedCertificate, Drive, certify_cycle, certify_cycle_motion, certify_driven, check_damped};
+pub use formula::{Enclosure, Errors, JudgedFormula, Range};
+pub use impact::{ImpactEnclosure, NotEnclosed, enclose_impact};
+pub use radii_polynomial::{NotProved, Proof};
+pub use validity::{Beyond, Validity, validity};
+
+use crate::decimal::{rounded_down, rounded_up};
+use crate::exact::ball::{Ball, Balls};
+use crate::exact::bound::Bound;
+use crate::exact::{Integer, Rational};
+use crate::expr::{Expr, ExprError};
+use crate::solution::AmplitudeConvention;
+use crate::symbol::Symbol;
+use fourier_series::{FourierSeries, WORKING};
+
+/// The letter of the displacement in every certificate.
+pub fn coordinate() -> Symbol {
+    Symbol::new("x")
+}
+
+/// The last harmonic of a block is at most this.
+pub const HIGHEST_HARMONIC: usize = 400;
+
+/// The most binary digits behind the point that a certificate may have.
+pub const MOST_BITS: usize = 224;
+
+/// Numbers from which a motion can be proved. They may be anything: [`check`] trusts none of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Certificate {
+    /// `f` of `x'' + f(x) = 0`, in the letter [`x`](coordinate) and numbers.
+    pub force: Expr,
+    /// `x(0)`; `x'(0) = 0`.
+    pub start: Rational,
+    /// Whether the motion has odd harmonics alone, as those of an odd force have.
+    pub odd: bool,
+    /// `mu` and the coefficients are integers times `2^-bits`.
+    pub bits: usize,
+    /// About `1/omega^2`.
+    pub mu: Integer,
+    /// About the cosine coefficients of the motion, `c_0` first.
+    pub coefficients: Vec<Integer>,
+    /// The last harmonic of the block, odd where `odd`.
+    pub highest: usize,
+    /// The entries of the inverse are integers times `2^-inverse_bits`.
+    pub inverse_bits: usize,
+    /// About the inverse of the derivative on `mu` and the harmonics of the block, row by row; the first row is that of `mu`, the
+    /// first column that of the condition `x(0) = A`.
+    pub inverse: Vec<Vec<Integer>>,
+    /// The weight of `mu` in the norm is `2^sigma`.
+    pub sigma: i32,
+    /// The radius that is claimed.
+    pub claim: Rational,
+    /// The formula that is judged, and what is claimed of it.
+    pub formula: Option<JudgedFormula>,
+}
+
+/// What has been proved.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Certified {
+    /// The motion exists, and is the only one so near.
+    pub proof: Proof,
+    /// `omega`.
+    pub frequency: Enclosure,
+    /// Of a limit cycle its characteristic exponent, by whose exponential neighbouring motions approach it, where it is negative, or leave
+    /// it; `None` of a motion whose energy is conserved.
+    pub exponent: Option<Enclosure>,
+    /// Of a driven motion the amplitude of its own harmonic.
+    pub amplitude: Option<Enclosure>,
+    /// The number of motions that the symmetries of the equation make of the proved one, itself among them: with a drive that of another whole number of its
+    /// periods later, of an equation that is its mirror image the mirror image. A formula is one for all of them alike.
+    pub copies: usize,
+    /// Set if the law of the formula was read as text and gives the numbers that are judged: the frequency, of a driven motion all.
+    pub law_is_held: bool,
+    /// Of the formula, where one is judged.
+    pub formula: Option<Errors>,
+}
+
+/// Why a certificate is none.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CheckError {
+    /// Numbers that do not fit together, or are too large.
+    #[error("not a certificate: {0}")]
+    Malformed(&'static str),
+    /// An inequality of the theorem does not hold.
+    #[error("not certified: {0}")]
+    NotProved(NotProved),
+    /// The motion is proved, and something of it is claimed to be smaller than what is proved.
+    #[error("not as claimed: {what} is proved to be {} at most, and less is claimed", rounded_up(*proved, 6))]
+    ClaimedLess {
+        /// Of which number.
+        what: &'static str,
+        /// What is proved.
+        proved: f64,
+    },
+    /// Likewise larger.
+    #[error("not as claimed: {what} is proved to be {} at least, and more is claimed", rounded_down(*proved, 6))]
+    ClaimedMore {
+        /// Of which number.
+        what: &'static str,
+        /// What is proved.
+        proved: f64,
+    },
+}
+
+/// Checks every inequality of the theorem, and every claim.
+///
+/// # Errors
+/// [`CheckError`].
+///
+/// ```
+/// use lindstedt::certificate::{certify, check};
+/// use lindstedt::exact::Integer;
+/// use lindstedt::{Options, Oscillator, solve};
+///
+/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
+/// let solution = solve(&pendulum, &Options { order: Some(2), ..Options::default() })?;
+/// let (mut certificate, certified) = certify(&pendulum, &solution, &"A = 3/2".parse()?)?;
+/// let errors = certified.formula.as_ref().ok_or("no formula")?;
+/// assert!(errors.relative.lower > 0.0148 && errors.relative.upper < 0.0149);
+/// assert_eq!(check(&certificate)?, certified);
+/// certificate.mu += Integer::from(1_000_000_000_000_i64);
+/// assert!(check(&certificate).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn check(certificate: &Certificate) -> Result<Certified, CheckError> {
+    certificate.well_formed().map_err(CheckError::Malformed)?;
+    let proof = theorem::prove(certificate).map_err(CheckError::NotProved)?;
+    let certified = formula::certified(certificate, proof).map_err(CheckError::NotProved)?;
+    formula::hold_claims(&certificate.claim, certificate.formula.as_ref(), &certified)?;
+    Ok(certified)
+}
+
+impl Certificate {
+    /// Leaves so many digits of the motion.
+    fn shorten(&mut self, bits: usize) {
+        let short = |units: &Integer| Balls { bits }.dyadic(units, self.bits).middle;
+        self.coefficients = self.coefficients.iter().map(short).collect();
+        self.mu = short(&self.mu);
+        self.bits = bits;
+    }
+
+    /// The step from one harmonic to the next.
+    fn step(&self) -> usize {
+        if self.odd { 2 } else { 1 }
+    }
+
+    /// The first harmonic.
+    fn first(&self) -> usize {
+        usize::from(self.odd)
+    }
+
+    /// The harmonics of the block.
+    fn block(&self) -> Vec<usize> {
+        (self.first()..=self.highest).step_by(self.step()).collect()
+    }
+
+    fn mu_ball(&self) -> Ball {
+        WORKING.dyadic(&self.mu, self.bits)
+    }
+
+    /// The approximate motion.
+    fn motion(&self) -> FourierSeries {
+        let balls = self.coefficients.iter().map(|units| WORKING.dyadic(units, self.bits));
+        FourierSeries::exactly(balls.collect(), vec![]).of_digits(self.bits)
+    }
+
+    /// Not above `mu`.
+    fn size_of_mu(&self) -> f64 {
+        match self.mu.is_positive() {
+            true => WORKING.distance_from_zero(&self.mu_ball()),
+            false => 0.0,
+        }
+    }
+
+    /// Not above `|c_1|`.
+    fn size_of_first_harmonic(&self) -> f64 {
+        WORKING.distance_from_zero(&self.motion().cosine(1))
+    }
+
+    /// Whether the force is odd and the motion has odd harmonics alone.
+    fn is_odd(&self) -> Result<bool, ExprError> {
+        Ok(force::is_odd(&self.force, &[coordinate()])? && self.coefficients.iter().step_by(2).all(|c| c.is_zero()))
+    }
+
+    /// What does not fit together.
+    fn well_formed(&self) -> Result<(), &'static str> {
+        let fits = Sizes {
+            bits: [self.bits, self.inverse_bits],
+            sigma: self.sigma,
+            highest: self.highest,
+            odd: self.odd,
+            number: &self.mu,
+            coefficients: &[&self.coefficients],
+            inverse: &self.inverse,
+            expressions: &[(&self.force, &[coordinate()])],
+        };
+        fits.of_numbers()?;
+        fits.of_inverse(self.block().len() + 1)?;
+        self.well_formed_formula()
+    }
+
+    /// Checks the formula, and that it belongs to the motion that it is held against.
+    ///
+    /// # Errors
+    /// The demand that does not hold.
+    fn well_formed_formula(&self) -> Result<(), &'static str> {
+        let Some(formula) = &self.formula else { return Ok(()) };
+        formula.well_formed(false)?;
+        if formula.sines.iter().any(|sine| !sine.is_zero()) {
+            return Err("a formula with sines, of a motion that begins at rest");
+        }
+        // Half a period later the motion begins at its other turning point: the formula is of the same start.
+        let start = formula.motion(self.bits).at_zero();
+        let apart = WORKING.difference(&start, &WORKING.fraction(&self.start));
+        let size = formula.motion(self.bits).norm() * Bound::power_of_two(-ROUNDING_OF_START);
+        if WORKING.distance_from_zero(&apart) > size.value() {
+            return Err("a formula that begins elsewhere than the motion");
+        }
+        self.amplitude_of_law(formula)?;
+        law::hold(formula, self.bits).map(|_| ())
+    }
+
+    /// Checks that the amplitude among the values of the law is that of the motion, about a place of rest.
+    fn amplitude_of_law(&self, formula: &JudgedFormula) -> Result<(), &'static str> {
+        let letter = AmplitudeConvention::Initial.symbol();
+        let amplitude = formula.values.iter().find(|(name, _)| *name == letter);
+        let Some((_, amplitude)) = amplitude else { return Ok(()) };
+        let belongs = amplitude.as_number().is_some_and(|amplitude| {
+            let place = &self.start - amplitude;
+            // An equilibrium that is no fraction is known to seventeen digits.
+            let near = amplitude.abs() / Rational::from_integer(Integer::from(1) << ROUNDING_OF_EQUILIBRIUM);
+            let force = |place: Rational| {
+                let value = self.force.substitute(coordinate(), &Expr::number(place)).ok();
+                value.and_then(|value| law::number(&value))
+            };
+            let is_zero = |ball: &Ball| WORKING.distance_from_zero(ball) <= 0.0;
+            match [&place - &near, place.clone(), &place + &near].map(force) {
+                [_, Some(middle), _] if is_zero(&middle) => true,
+                [Some(left), _, Some(right)] => {
+                    !is_zero(&left) && !is_zero(&right) && left.middle.is_negative() != right.middle.is_negative()
+                }
+                _ => false,
+            }
+        });
+        match belongs {
+            true => Ok(()),
+            false => Err("a law whose amplitude is not that of the motion"),
+        }
+    }
+}
+
+/// An equilibrium is known so well, in binary digits of the amplitude.
+const ROUNDING_OF_EQUILIBRIUM: usize = 30;
+
+/// The sum of the coefficients of a formula is its start up to so many binary digits of their size: they are doubles, of series that may cancel.
+const ROUNDING_OF_START: i32 = 20;
+
+/// What of a certificate may be too large, or may not fit together.
+struct Sizes<'a> {
+    /// Those of the numbers, and of the inverse.
+    bits: [usize; 2],
+    sigma: i32,
+    highest: usize,
+    odd: bool,
+    /// That which is looked for beside the harmonics.
+    number: &'a Integer,
+    coefficients: &'a [&'a [Integer]],
+    inverse: &'a [Vec<Integer>],
+    /// With the letters that they may have.
+    expressions: &'a [(&'a Expr, &'a [Symbol])],
+}
+
+impl Sizes<'_> {
+    /// Whether no number is too large.
+    fn of_numbers(&self) -> Result<(), &'static str> {
+        let has_values =
+            |(force, letters): &(&Expr, &[Symbol])| force.symbols().iter().all(|name| letters.contains(name));
+        let coefficients = self.coefficients.iter().copied().flatten();
+        let all = coefficients.chain([self.number]).chain(self.inverse.iter().flatten());
+        let demands = [
+            (self.bits.iter().all(|bits| *bits <= MOST_BITS), "more than 224 bits"),
+            ((-64..=64).contains(&self.sigma), "a weight of mu beyond 2^64"),
+            (
+                (1..=HIGHEST_HARMONIC).contains(&self.highest),
+                "a block that ends beyond harmonic 400, or has none",
+            ),
+            (
+                !self.odd || self.highest % 2 == 1,
+                "odd harmonics, and a block that ends with an even one",
+            ),
+            (
+                self.coefficients.iter().all(|list| list.len() <= 2 * HIGHEST_HARMONIC),
+                "more than 800 harmonics",
+            ),
+            (
+                self.expressions.iter().all(has_values),
+                "a force with letters that have no value",
+            ),
+            (
+                all.into_iter().all(|integer| integer.bits() <= 700),
+                "a number of more than 200 digits",
+            ),
+        ];
+        match demands.into_iter().find(|(holds, _)| !holds) {
+            Some((_, reason)) => Err(reason),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether the inverse has as many rows and columns as there are unknowns.
+    fn of_inverse(&self, unknowns: usize) -> Result<(), &'static str> {
+        match self.inverse.len() == unknowns && self.inverse.iter().all(|row| row.len() == unknowns) {
+            true => Ok(()),
+            false => Err("an inverse of another size than the block"),
+        }
+    }
+}

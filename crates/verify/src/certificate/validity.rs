@@ -1,0 +1,275 @@
+//! From an amplitude to a range: a formula that is within a tolerance for every amplitude of an interval, proved.
+//!
+//! An interval `|A - A_m| <= h` is one question more in the theorem: the condition at `t = 0` is off by h at most, so that
+//! `Y0 + h ||B e_eta||` stands for Y0, and the numbers of the motion at `A_m` prove all motions of the interval at once. The square of the
+//! ratio of the frequencies is `q = omega~^2 mu`, the law times `1/omega^2`, and by the mean value theorem
+//!
+//! ```text
+//! q(A) = q(A_m) + (A - A_m) ((omega~^2)' mu + omega~^2 mu')      with the law, mu and mu' of the whole interval in the second term
+//! ```
+//!
+//! The width of q is of the order h^2, since the two slopes are known to the order h: where the error hardly changes with A they cancel.
+//!
+//! In: an oscillator, an answer with a law in closed form, an interval of amplitudes. Out: how far the formula is proved to
+//! hold from its lower end on. Intervals are halved where they do not prove it and widened where they do; each costs a proof.
+
+use super::candidate::{NotCertified, certify, inverse, refine, weight};
+use super::force::along;
+use super::fourier_series::{FourierSeries, WORKING};
+use super::radii_polynomial::NotProved;
+use super::theorem::{Neighbours, prove_around};
+use super::{Certificate, HIGHEST_HARMONIC, coordinate};
+use crate::decimal::{not_above_typed, rounded_fraction};
+use crate::exact::bound::Bound;
+use crate::exact::rational::{from_f64, to_f64};
+use crate::exact::{Integer, Rational};
+use crate::expr::Expr;
+use crate::interrupt::Supervision;
+use crate::oscillator::Oscillator;
+use crate::solution::Solution;
+use crate::values::Values;
+
+/// How far a formula is proved to hold.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Validity {
+    /// From this amplitude on.
+    pub from: Rational,
+    /// Up to this one.
+    pub to: Rational,
+    /// `|omega~/omega - 1|` is at most this for every amplitude between them.
+    pub within: f64,
+    /// The intervals, each proved.
+    pub intervals: usize,
+    /// What is beyond.
+    pub beyond: Beyond,
+}
+
+/// Why a range ends where it does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Beyond {
+    /// It was not asked for more.
+    Asked,
+    /// At this amplitude the formula is off by more, proved.
+    Further(Rational),
+    /// The formula is not proved to be within there, and not proved to be beyond either.
+    Open(Rational),
+    /// There is no proof of the motion there.
+    Unproved(Rational, NotCertified),
+    /// It was to stop.
+    Stopped,
+}
+
+/// Places of the range, at equal ratios, for a tolerance of a hundredth: no interval is shorter than from one to the next. For a
+/// smaller tolerance there are more, up to sixteen times as many.
+const PLACES: u32 = 1 << 16;
+
+/// Binary digits of the motions, of which a few hundredths have to be proved.
+const BITS: usize = 48;
+
+/// The largest weight of an error of `mu`, as a power of two: with more the inequalities hold for shorter intervals alone.
+const HEAVIEST: i32 = 4;
+
+/// How far a formula is proved to be within a tolerance, for the amplitudes from `from` to `to`, both positive.
+///
+/// # Errors
+/// No proof at the first amplitude, or a law that is none of the amplitude in closed form.
+///
+/// ```
+/// use lindstedt::certificate::validity;
+/// use lindstedt::exact::ratio;
+/// use lindstedt::{Options, Oscillator, Supervision, solve};
+///
+/// let cubic = Oscillator::parse("x'' + x - x^3/6 = 0")?;
+/// let solution = solve(&cubic, &Options { order: Some(2), ..Options::default() })?;
+/// let proved = validity(&cubic, &solution, &"".parse()?, [&ratio(1, 2), &ratio(1, 1)], 1e-3, Supervision::default())?;
+/// assert_eq!(proved.to, ratio(1, 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn validity(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    at: &Values,
+    [from, to]: [&Rational; 2],
+    tolerance: f64,
+    supervision: Supervision,
+) -> Result<Validity, NotCertified> {
+    let mut family = Family::of(oscillator, solution, at, from)?;
+    let tolerance = not_above_typed(tolerance);
+    let finer = (1..=4)
+        .take_while(|finer| tolerance < 0.01 / f64::from(1 << (finer - 1)))
+        .count();
+    let finest = PLACES << finer;
+    let ends = [from, to].map(to_f64);
+    let place = |position: u32| match position {
+        0 => from.clone(),
+        position if position == finest => to.clone(),
+        _ => {
+            let part = f64::from(position) / f64::from(finest);
+            let place = ends[0] * (ends[1] / ends[0]).powf(part);
+            from_f64(place).map_or_else(|| from.clone(), |place| place.max(from.clone()).min(to.clone()))
+        }
+    };
+    let (mut position, mut width, mut intervals, mut within) = (0, finest / 64, 0, 0.0_f64);
+    supervision.progress.begin(finest as usize);
+    let beyond = loop {
+        if position == finest {
+            break Beyond::Asked;
+        }
+        if supervision.interrupt.is_requested() {
+            break Beyond::Stopped;
+        }
+        let next = (position + width).min(finest);
+        match family.largest_error(&place(position), &place(next)) {
+            Ok(error) if error <= tolerance => {
+                within = within.max(error);
+                (position..next).for_each(|_| supervision.progress.advance());
+                (position, width) = (next, 2 * width);
+                intervals += 1;
+            }
+            _ if width > 1 => width = (width / 2).min(next - position),
+            _ => {
+                // At the first places beyond, the error is too near to the tolerance to be told from it.
+                // As they are printed, with six digits.
+                let shown = |position: u32| match position.min(finest) {
+                    position if position == finest => to.clone(),
+                    position => rounded_fraction(&place(position), 6),
+                };
+                let farther = [0, 12, 60, 252, 1020].map(|steps| shown(next + (steps << finer)));
+                break family.beyond(&farther, tolerance);
+            }
+        }
+    };
+    Ok(Validity {
+        from: from.clone(),
+        to: place(position),
+        within,
+        intervals,
+        beyond,
+    })
+}
+
+/// The motions of one equation and their law, amplitude by amplitude.
+struct Family<'a> {
+    oscillator: &'a Oscillator,
+    solution: &'a Solution,
+    /// The values of the parameters.
+    at: Values,
+    /// The last motion that was looked for, from where the next one is.
+    certificate: Certificate,
+    /// Where it swings about.
+    equilibrium: Rational,
+    /// omega~^2 as an expression in the amplitude, which has the letter of the coordinate here.
+    squared: Expr,
+    /// Its derivative.
+    slope: Expr,
+}
+
+impl<'a> Family<'a> {
+    fn of(
+        oscillator: &'a Oscillator,
+        solution: &'a Solution,
+        at: &Values,
+        from: &Rational,
+    ) -> Result<Self, NotCertified> {
+        let amplitude = solution.amplitude.symbol();
+        let (_, at) = at.split(&[amplitude]);
+        let (mut certificate, _) = certify(oscillator, solution, &with(&at, solution, from))?;
+        certificate.formula = None;
+        certificate.shorten(BITS);
+        let law = solution
+            .law
+            .closed_form()
+            .map(|form| (form.value.clone(), form.squared));
+        let law = law.or_else(|| Some((Expr::from(solution.law.frequency_squared()?), true)));
+        let law = law.or_else(|| Some((Expr::from(solution.law.frequency()?), false)));
+        let (mut value, is_squared) = law.ok_or_else(|| NotCertified::Law(solution.formula()))?;
+        for definition in solution.definitions.iter().rev() {
+            value = value.substitute(definition.symbol, &definition.meaning)?;
+        }
+        let (values, _) = at.split(&oscillator.parameters);
+        let value = value
+            .substitute_all(&values)?
+            .substitute(amplitude, &Expr::from(coordinate()))?;
+        let squared = if is_squared { value } else { &value * &value };
+        Ok(Self {
+            equilibrium: &certificate.start - from,
+            slope: squared.differentiate(coordinate())?,
+            squared,
+            oscillator,
+            solution,
+            at,
+            certificate,
+        })
+    }
+
+    /// No amplitude between these has a larger relative error.
+    fn largest_error(&mut self, from: &Rational, to: &Rational) -> Result<f64, NotProved> {
+        let two = Integer::from(2);
+        let (middle, half) = ((from + to) / &two, (to - from) / &two);
+        let spread = Bound::of_fraction(&half);
+        // Where this fails, the last motion that was proved is still the nearest one.
+        let mut certificate = self.certificate.clone();
+        certificate.start = &self.equilibrium + &middle;
+        refine(&mut certificate, spread * spread * Bound::power_of_two(-4))?;
+        let near = proved(&mut certificate, spread)?;
+        let law = |expression: &Expr, radius: Bound| {
+            let mut amplitude = WORKING.fraction(&middle);
+            amplitude.radius += radius;
+            along(expression, &FourierSeries::constant(amplitude)).map(|series| series.at_zero())
+        };
+        let slope = WORKING.sum(
+            &WORKING.product(&law(&self.slope, spread)?, &near.mu),
+            &WORKING.product(&law(&self.squared, spread)?, &near.slope),
+        );
+        let mut ratio = WORKING.product(&law(&self.squared, Bound::ZERO)?, &near.mu_in_middle);
+        ratio.radius += spread * WORKING.magnitude(&slope);
+        let root = WORKING.root(&ratio, 2).ok_or(NotProved::TooLarge(spread))?;
+        self.certificate = certificate;
+        Ok(WORKING
+            .magnitude(&WORKING.difference(&root, &WORKING.integer(1)))
+            .value())
+    }
+
+    /// The first of these amplitudes at which the formula is proved to be off by more, or what is known of the very first.
+    fn beyond(&self, amplitudes: &[Rational; 5], tolerance: f64) -> Beyond {
+        let is_further = |amplitude: &Rational| {
+            let (_, certified) = certify(
+                self.oscillator,
+                self.solution,
+                &with(&self.at, self.solution, amplitude),
+            )?;
+            Ok(certified
+                .formula
+                .is_some_and(|errors| errors.relative.lower > tolerance))
+        };
+        let further = amplitudes.iter().find(|amplitude| is_further(amplitude) == Ok(true));
+        match (further, is_further(&amplitudes[0])) {
+            (Some(further), _) => Beyond::Further(further.clone()),
+            (None, Ok(_)) => Beyond::Open(amplitudes[0].clone()),
+            (None, Err(reason)) => Beyond::Unproved(amplitudes[0].clone(), reason),
+        }
+    }
+}
+
+/// The proof of all motions whose start is so near, with a larger block where that of the last one is too small.
+fn proved(certificate: &mut Certificate, spread: Bound) -> Result<Neighbours, NotProved> {
+    certificate.sigma = weight(&certificate.inverse).min(HEAVIEST);
+    match prove_around(certificate, spread) {
+        Err(NotProved::NoContraction(_)) if certificate.highest < HIGHEST_HARMONIC / 2 => {
+            certificate.highest = (certificate.highest * 3 / 2) | 1;
+            certificate.inverse = inverse(certificate)?;
+            certificate.sigma = weight(&certificate.inverse).min(HEAVIEST);
+            prove_around(certificate, spread)
+        }
+        other => other,
+    }
+}
+
+/// The values with this amplitude.
+fn with(at: &Values, solution: &Solution, amplitude: &Rational) -> Values {
+    let mut values = at.clone();
+    // A number is a value.
+    let _ = values.insert(solution.amplitude.symbol(), Expr::number(amplitude.clone()));
+    values
+}

@@ -1,0 +1,157 @@
+//! Where a branch changes: folds, crossings, period doublings, and a second frequency coming in.
+//!
+//! ```text
+//! fold                     dp changes its sign along the branch; one multiplier is 1
+//! branch point             the determinant of the bordered equations changes its sign, dp does not
+//! period doubling          det(M + 1) = 1 + tr M + det M changes its sign: a multiplier passes -1
+//! Neimark-Sacker           det M passes 1 while the multipliers are a complex pair: they leave the unit circle together
+//! Hopf                     the end of a branch of self-excited motions, where the amplitude is zero
+//! centre                   a crossing with motions of every amplitude at one value of the parameter
+//! ```
+//!
+//! (A. H. Nayfeh and B. Balachandran, *Applied Nonlinear Dynamics*, chapter 3; Y. A. Kuznetsov, *Elements of Applied Bifurcation
+//! Theory*, Springer 2004.) In: two neighbouring points of a branch with what is known there. Out: the point between them, by the root
+//! of the quantity that changes its sign.
+
+use super::balance::Balance;
+use super::continuation::Node;
+use super::stability::Floquet;
+use crate::numeric::ode::root::find_root;
+
+/// What happens at a point of a branch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum BifurcationKind {
+    /// The branch turns back: beyond it there is no such motion, and it jumps.
+    Fold,
+    /// Another branch crosses: often one of less symmetry.
+    BranchPoint,
+    /// Motions of twice the period come off.
+    PeriodDoubling,
+    /// A second frequency comes in.
+    NeimarkSacker,
+    /// A self-excited motion is born from rest.
+    Hopf,
+    /// Motions of every amplitude: what swings freely repeats itself with the others.
+    Centre,
+}
+
+impl BifurcationKind {
+    /// Its name in documents: `period-doubling`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Fold => "fold",
+            Self::BranchPoint => "branch-point",
+            Self::PeriodDoubling => "period-doubling",
+            Self::NeimarkSacker => "neimark-sacker",
+            Self::Hopf => "hopf",
+            Self::Centre => "centre",
+        }
+    }
+}
+
+/// What changes its sign at a bifurcation of this kind; nothing where it cannot be told.
+fn test(kind: BifurcationKind, node: &Node, floquet: Option<Floquet>) -> Option<f64> {
+    let (trace, determinant) = match floquet {
+        Some(floquet) => (floquet.monodromy.trace(), floquet.monodromy.determinant()),
+        None => (f64::NAN, f64::NAN),
+    };
+    let value = match kind {
+        BifurcationKind::Fold => node.parameter_slope(),
+        BifurcationKind::BranchPoint => node.orientation,
+        BifurcationKind::PeriodDoubling => 1.0 + trace + determinant,
+        BifurcationKind::NeimarkSacker => determinant - 1.0,
+        // One lies at the end of a branch, where continuation finds it; the other is a crossing of branches.
+        BifurcationKind::Hopf | BifurcationKind::Centre => f64::NAN,
+    };
+    value.is_finite().then_some(value)
+}
+
+/// The bifurcations between two neighbouring points, each at its place on the branch. `between` finds the point at a part of the way,
+/// `floquet` the multipliers of a point.
+pub fn between(
+    balance: &Balance,
+    [from, to]: [(&Node, Option<Floquet>); 2],
+    between: &impl Fn(f64) -> Option<Node>,
+    floquet: &impl Fn(&Node) -> Option<Floquet>,
+) -> Vec<(BifurcationKind, Node)> {
+    use BifurcationKind::{BranchPoint, Fold, NeimarkSacker, PeriodDoubling};
+    /// A determinant that stays this close to 1 is that of a motion without damping.
+    const CONSERVED: f64 = 1e-6;
+    let mut found = Vec::new();
+    // The multipliers of a self-excited motion stay on the positive side.
+    let kinds = match balance.driven.self_excited {
+        true => &[BranchPoint, Fold][..],
+        false => &[BranchPoint, Fold, PeriodDoubling, NeimarkSacker],
+    };
+    for &kind in kinds {
+        let (Some(before), Some(after)) = (test(kind, from.0, from.1), test(kind, to.0, to.1)) else {
+            continue;
+        };
+        if before * after >= 0.0 {
+            continue;
+        }
+        if kind == NeimarkSacker {
+            let determinants = before.abs().max(after.abs());
+            let complex = [from.1, to.1].into_iter().flatten().all(|floquet| {
+                let trace = floquet.monodromy.trace();
+                trace * trace < 4.0 * floquet.monodromy.determinant()
+            });
+            if determinants < CONSERVED || !complex {
+                continue;
+            }
+        }
+        let value = |part: f64| {
+            let node = if part == 0.0 {
+                Some(from.0.clone())
+            } else if part == 1.0 {
+                Some(to.0.clone())
+            } else {
+                between(part)
+            };
+            let node = node.as_ref();
+            let multipliers = node
+                .filter(|_| matches!(kind, PeriodDoubling | NeimarkSacker))
+                .and_then(floquet);
+            node.and_then(|node| test(kind, node, multipliers)).unwrap_or(f64::NAN)
+        };
+        let part = match kind {
+            // A sign alone has no root but by halving.
+            BranchPoint => halved(value),
+            _ => find_root(value, 0.0, 1.0).ok(),
+        };
+        // Where branches cross Newton's method may not settle: beside it is near enough.
+        const BESIDE: [f64; 5] = [0.0, 1e-6, -1e-6, 1e-3, -1e-3];
+        let beside = |part: f64| BESIDE.iter().find_map(|aside| between((part + aside).clamp(0.0, 1.0)));
+        let Some(node) = part.and_then(beside) else { continue };
+        // A branch that is born at a crossing turns back there without a fold of its own, and its turn is easier to find.
+        let crossing = found
+            .iter()
+            .position(|(other, _)| kind == Fold && *other == BranchPoint);
+        match crossing {
+            Some(index) => found[index] = (BranchPoint, node),
+            None => found.push((kind, node)),
+        }
+    }
+    found
+}
+
+/// Where a sign changes between 0 and 1, to 1e-9.
+fn halved(mut value: impl FnMut(f64) -> f64) -> Option<f64> {
+    const HALVINGS: usize = 30;
+    let (mut low, mut high) = (0.0, 1.0);
+    let before = value(low);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        let there = value(middle);
+        if there.is_nan() {
+            // The branch itself cannot be told from the other one here: close enough.
+            break;
+        }
+        if there * before > 0.0 {
+            low = middle
+        } else {
+            high = middle
+        }
+    }
+    Some(0.5 * (low + high))
+}

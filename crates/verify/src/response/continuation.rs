@@ -1,0 +1,580 @@
+//! Branches of periodic motions, followed by pseudo-arclength through folds.
+//!
+//! ```text
+//! R(u, p) = 0,   w_u^2 u'.(u - u_0) + w_p^2 p' (p - p_0) = s        [R_u R_p; w_u^2 u'^T  w_p^2 p'] [du; dp] = -[R; 0]
+//! ```
+//!
+//! From a point a step along the tangent is a guess, and Newton's method on the bordered equations, at right angles to the tangent,
+//! brings it back to the branch (H. B. Keller, in *Applications of Bifurcation Theory*, Academic Press 1977; R. Seydel, *Practical
+//! Bifurcation and Stability Analysis*, Springer 2010, chapter 4). Coefficients are measured in the size of the motion where the step
+//! begins, the parameter in the length of its range. In: a balance, a point on the branch. Out: the points of the whole branch within
+//! the range, both ways, with their tangents.
+
+use nalgebra::{DMatrix, DVector, Dyn, LU};
+
+use super::balance::{Balance, CONVERGED, Linearised};
+use super::hopf;
+use super::stability::TrueMotion;
+use crate::interrupt::Interrupt;
+
+/// A point of a branch.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// The coefficients of the motion.
+    pub coefficients: DVector<f64>,
+    /// The parameter.
+    pub parameter: f64,
+    /// The direction of the branch, of length one in the weights of the step to here.
+    pub tangent: DVector<f64>,
+    /// The sign of the determinant of the bordered equations: it changes where branches cross, and not at a fold.
+    pub orientation: f64,
+    /// A motion that is known by shooting, not by the balance: it sticks, or has.
+    pub truth: Option<TrueMotion>,
+}
+
+impl Node {
+    /// Where a parameter lies on the way to the next node, from zero to one; `None` where it does not.
+    pub fn part_of_way(&self, next: &Self, parameter: f64) -> Option<f64> {
+        let way = next.parameter - self.parameter;
+        let part = if way == 0.0 {
+            0.0
+        } else {
+            (parameter - self.parameter) / way
+        };
+        (-1e-9..=1.0 + 1e-9).contains(&part).then_some(part)
+    }
+
+    /// Position and velocity at phase zero.
+    pub fn begins(&self, balance: &Balance) -> [f64; 2] {
+        self.truth.map_or_else(
+            || balance.start(&self.coefficients, self.parameter),
+            |truth| truth.start,
+        )
+    }
+
+    /// dp along the branch: its sign changes at a fold.
+    pub fn parameter_slope(&self) -> f64 {
+        self.tangent[self.tangent.len() - 1]
+    }
+}
+
+/// Why a branch ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BranchEnd {
+    /// At an end of the range.
+    Range,
+    /// Where another branch crosses: beyond there are its own motions, begun later or mirrored.
+    Crossing,
+    /// Where it began.
+    Closed,
+    /// The amplitude grows without bound.
+    Unbounded,
+    /// No step, however small, leads on.
+    Lost,
+    /// After as many points as are allowed.
+    Points,
+    /// The harmonics that are kept do not suffice for the motions beyond.
+    Harmonics,
+    /// It rests all the time: dry friction bears what drives it.
+    Held,
+    /// Its amplitude has come to zero: a self-excited motion is born from rest there.
+    Rest,
+    /// Its period grows without bound: a self-excited motion comes near a place of rest that it cannot pass.
+    Slow,
+    /// Somebody asked for it.
+    Interrupted,
+}
+
+/// The points of a branch in order, and why it ends at either end.
+#[derive(Clone, Debug)]
+pub struct Path {
+    /// The points.
+    pub nodes: Vec<Node>,
+    /// Why it ends before the first point, and behind the last.
+    pub ends: [BranchEnd; 2],
+    /// Whether its mirror image, -x half a period of the drive later, is another branch.
+    pub mirrored: bool,
+}
+
+/// How a branch is followed.
+#[derive(Clone, Copy, Debug)]
+pub struct Walk {
+    /// The range of the parameter.
+    pub range: [f64; 2],
+    /// The longest step, in parts of the range and of the size of the motion.
+    pub longest: f64,
+    /// Points after which it ends.
+    pub most: usize,
+    /// Whether it ends where the harmonics do not suffice for the motion.
+    pub resolved: bool,
+    /// The size of the largest motion known: smaller ones are measured in parts of it.
+    pub size: f64,
+    /// The size of ordinary motions: far beyond it they are unbounded.
+    pub ordinary: f64,
+    /// Who may ask it to end.
+    pub interrupt: Interrupt,
+}
+
+/// What a step is measured in.
+#[derive(Clone, Copy, Debug)]
+struct Weights {
+    coefficients: f64,
+    parameter: f64,
+    /// Of the frequency and its place, where it is an unknown.
+    frequency: Option<(usize, f64)>,
+}
+
+impl Weights {
+    /// Of an unknown, of which there are `size`, or behind them of the parameter.
+    fn of(&self, index: usize, size: usize) -> f64 {
+        match self.frequency {
+            Some((place, weight)) if place == index => weight,
+            _ if index < size => self.coefficients,
+            _ => self.parameter,
+        }
+    }
+
+    fn dot(&self, one: &DVector<f64>, other: &DVector<f64>) -> f64 {
+        let size = one.len() - 1;
+        (0..one.len())
+            .map(|index| self.of(index, size).powi(2) * one[index] * other[index])
+            .sum()
+    }
+
+    fn norm(&self, vector: &DVector<f64>) -> f64 {
+        self.dot(vector, vector).sqrt()
+    }
+
+    /// The last row of the bordered equations: a product with it is one with this direction.
+    fn row(&self, direction: &DVector<f64>) -> DVector<f64> {
+        let size = direction.len() - 1;
+        DVector::from_fn(size + 1, |index, _| self.of(index, size).powi(2) * direction[index])
+    }
+}
+
+/// Coefficients and parameter as one vector.
+fn joined(coefficients: &DVector<f64>, parameter: f64) -> DVector<f64> {
+    coefficients.clone().push(parameter)
+}
+
+/// The bordered matrix with this last row.
+fn bordered(linear: &Linearised, row: &DVector<f64>) -> DMatrix<f64> {
+    let size = linear.residual.len();
+    DMatrix::from_fn(size + 1, size + 1, |i, j| match (i < size, j < size) {
+        (true, true) => linear.jacobian[(i, j)],
+        (true, false) => linear.by_parameter[i],
+        (false, _) => row[j],
+    })
+}
+
+/// The size of the largest motion of these, that of one in the middle where they grow without bound: what is measured in an enormous size
+/// passes over a resonance as if it were nothing.
+pub(super) fn largest<const ENDS: usize>(balance: &Balance, nodes: &[Node], ends: [BranchEnd; ENDS]) -> f64 {
+    let mut sizes: Vec<f64> = nodes.iter().map(|node| balance.extent(&node.coefficients)).collect();
+    sizes.sort_by(f64::total_cmp);
+    let place = match ends.contains(&BranchEnd::Unbounded) {
+        true => sizes.len() / 2,
+        false => sizes.len().saturating_sub(1),
+    };
+    sizes.get(place).copied().unwrap_or(0.0)
+}
+
+impl Walk {
+    fn weights(&self, balance: &Balance, coefficients: &DVector<f64>) -> Weights {
+        /// The smallest size that counts, in parts of the largest.
+        const SMALLEST: f64 = 0.1;
+        let own = balance.extent(coefficients).max(1e-3 * coefficients[0].abs());
+        let size = own.max(SMALLEST * self.size);
+        Weights {
+            coefficients: if size > 0.0 { 1.0 / size } else { 1.0 },
+            parameter: 1.0 / (self.range[1] - self.range[0]),
+            frequency: balance
+                .frequency_place()
+                .map(|place| (place, 1.0 / coefficients[place])),
+        }
+    }
+
+    /// Newton's method at right angles to a direction: the point, its tangent turned as `direction`, and the number of iterations.
+    fn corrected(
+        &self,
+        balance: &Balance,
+        guess: &DVector<f64>,
+        direction: &DVector<f64>,
+        weights: Weights,
+    ) -> Option<(Node, usize)> {
+        const MOST: usize = 12;
+        let size = balance.size();
+        let row = weights.row(direction);
+        let mut point = guess.clone();
+        let mut iterations = 0;
+        loop {
+            let coefficients = point.rows(0, size).into_owned();
+            let parameter = point[size];
+            let linear = balance.linearised(&coefficients, parameter)?;
+            let factors = bordered(&linear, &row).lu();
+            let right = linear.residual.push(row.dot(&(&point - guess)));
+            let step = factors.solve(&right)?;
+            let moved = weights.norm(&step);
+            if !moved.is_finite() || iterations >= MOST {
+                return None;
+            }
+            point -= &step;
+            iterations += 1;
+            if moved <= CONVERGED {
+                // So short a step leaves the derivatives what they are.
+                let coefficients = point.rows(0, size).into_owned();
+                let node = node(&factors, coefficients, point[size], weights);
+                return node.map(|node| (node, iterations));
+            }
+        }
+    }
+
+    /// A point between two of a branch, at this part of the way.
+    pub fn between(&self, balance: &Balance, from: &Node, to: &Node, part: f64) -> Option<Node> {
+        let weights = self.weights(balance, &from.coefficients);
+        let (start, end) = (
+            joined(&from.coefficients, from.parameter),
+            joined(&to.coefficients, to.parameter),
+        );
+        let way = &end - &start;
+        let length = weights.norm(&way);
+        if length == 0.0 {
+            return Some(from.clone());
+        }
+        let guess = &start + &way * part;
+        self.corrected(balance, &guess, &(way / length), weights)
+            .map(|(node, _)| node)
+    }
+
+    /// The whole branch through a motion at a parameter.
+    pub fn through(&self, balance: &Balance, coefficients: &DVector<f64>, parameter: f64) -> Option<Path> {
+        let mut direction = DVector::zeros(balance.size() + 1);
+        direction[balance.size()] = self.range[1] - self.range[0];
+        self.along(balance, coefficients, parameter, &direction)
+    }
+
+    /// The whole branch through a motion, its first direction given.
+    pub fn along(
+        &self,
+        balance: &Balance,
+        coefficients: &DVector<f64>,
+        parameter: f64,
+        direction: &DVector<f64>,
+    ) -> Option<Path> {
+        let weights = self.weights(balance, coefficients);
+        let linear = balance.linearised(coefficients, parameter)?;
+        let length = weights.norm(direction);
+        let factors = bordered(&linear, &weights.row(&(direction / length))).lu();
+        let start = node(&factors, coefficients.clone(), parameter, weights)?;
+        let mut backward = start.clone();
+        backward.tangent *= -1.0;
+        // The last row of the bordered equations has turned round.
+        backward.orientation *= -1.0;
+        let (mut nodes, end) = self.follow(balance, start);
+        if end == BranchEnd::Closed {
+            return Some(Path {
+                nodes,
+                ends: [end, end],
+                mirrored: false,
+            });
+        }
+        let largest = largest(balance, &nodes, [end]).max(self.size);
+        let (before, first_end) = Self { size: largest, ..*self }.follow(balance, backward);
+        let turned = before.into_iter().skip(1).map(|mut node| {
+            node.tangent *= -1.0;
+            node.orientation *= -1.0;
+            node
+        });
+        let mut all: Vec<Node> = turned.collect();
+        all.reverse();
+        all.append(&mut nodes);
+        Some(Path {
+            nodes: all,
+            ends: [first_end, end],
+            mirrored: false,
+        })
+    }
+
+    /// The motions by which a branch that ends with the range comes back to it, where it is followed beyond as far as `wide`: a
+    /// resonance whose peak lies outside has two of its branches inside, and one of them may be hard to come by otherwise.
+    pub(super) fn returns(&self, balance: &Balance, path: &Path, wide: [f64; 2]) -> Vec<(DVector<f64>, f64)> {
+        /// Points beyond the range.
+        const MOST: usize = 200;
+        let outward = |(node, turn): (&Node, f64)| Node {
+            tangent: &node.tangent * turn,
+            ..node.clone()
+        };
+        let ends = [
+            path.nodes.first().map(|node| (node, -1.0)),
+            path.nodes.last().map(|node| (node, 1.0)),
+        ];
+        let ends = ends
+            .into_iter()
+            .zip(path.ends)
+            .filter(|(_, end)| *end == BranchEnd::Range);
+        let walk = Self {
+            range: wide,
+            most: MOST,
+            ..*self
+        };
+        let [low, high] = self.range;
+        let back = |pair: &[Node]| {
+            let [from, to] = pair else { return None };
+            let inside = to.parameter.clamp(low, high);
+            let part = from.part_of_way(to, inside)?;
+            // A point on the bound itself has not left the range yet.
+            let left = from.parameter.clamp(low, high) != from.parameter;
+            let guess = &from.coefficients + (&to.coefficients - &from.coefficients) * part;
+            let found = left.then(|| balance.solve(&guess, inside)).flatten()?;
+            Some((found, inside))
+        };
+        ends.filter_map(|(end, _)| end.map(outward))
+            .flat_map(|start| {
+                walk.follow(balance, start)
+                    .0
+                    .windows(2)
+                    .filter_map(back)
+                    .collect::<Vec<_>>()
+            })
+            .collect()
+    }
+
+    /// Whether the last harmonics that are kept are as large as if there were as many again.
+    pub(super) fn is_cut_off(&self, balance: &Balance, coefficients: &DVector<f64>) -> bool {
+        /// Of the size of the motion: of one that is resolved the last quarter has next to nothing.
+        const LARGEST: f64 = 0.1;
+        self.resolved && balance.last_harmonics(coefficients) > LARGEST * balance.extent(coefficients)
+    }
+
+    /// The points from one on in the direction of its tangent.
+    fn follow(&self, balance: &Balance, start: Node) -> (Vec<Node>, BranchEnd) {
+        const FIRST: f64 = 0.2;
+        const SHORTEST: f64 = 1e-9;
+        /// Short enough to tell where the harmonics cease to suffice, or where an end of the range is near.
+        const SHORT: f64 = 1e-4;
+        const FEW: usize = 3;
+        const MANY: usize = 6;
+        /// Cosine of the angle between tangents beyond which a step was too long.
+        const SHARPEST: f64 = 0.94;
+        const ENORMOUS: f64 = 1e4;
+        /// Of the highest frequency of a branch: what is slower is no more than a sum of waves can say.
+        const SLOW: f64 = 0.05;
+        let [low, high] = self.range;
+        let bound = ENORMOUS * balance.extent(&start.coefficients).max(self.ordinary);
+        let mut nodes = vec![start];
+        let mut fastest = 0.0_f64;
+        let mut step = FIRST * self.longest;
+        loop {
+            if self.interrupt.is_requested() {
+                return (nodes, BranchEnd::Interrupted);
+            }
+            if nodes.len() >= self.most {
+                return (nodes, BranchEnd::Points);
+            }
+            let here = &nodes[nodes.len() - 1];
+            let weights = self.weights(balance, &here.coefficients);
+            let tangent = &here.tangent / weights.norm(&here.tangent);
+            let start = joined(&here.coefficients, here.parameter);
+            let guess = &start + &tangent * step;
+            let found = self.corrected(balance, &guess, &tangent, weights).filter(|(node, _)| {
+                let next = &node.tangent / weights.norm(&node.tangent);
+                let moved = weights.norm(&(joined(&node.coefficients, node.parameter) - &start));
+                weights.dot(&next, &tangent) > SHARPEST && moved < 1.5 * step
+            });
+            let cut_off = found
+                .as_ref()
+                .is_some_and(|(node, _)| self.is_cut_off(balance, &node.coefficients));
+            let Some((mut node, iterations)) = found.filter(|_| !cut_off) else {
+                step *= 0.5;
+                if cut_off && step < SHORT {
+                    return (nodes, BranchEnd::Harmonics);
+                }
+                if step < SHORTEST {
+                    // Where the damping has a corner at rest the branch has one there as well.
+                    let near = here.parameter;
+                    return self.ended_at_rest(balance, nodes, near);
+                }
+                continue;
+            };
+            let outside = node.parameter < low || node.parameter > high;
+            if outside {
+                if let Some(last) = self.at_bound(balance, here, &node) {
+                    nodes.push(last);
+                    return (nodes, BranchEnd::Range);
+                }
+                // Where the end of the range is a resonance of a harmonic there is no motion, or more than one: near it is near enough.
+                step *= 0.5;
+                if step < SHORT {
+                    return (nodes, BranchEnd::Range);
+                }
+                continue;
+            }
+            if balance.driven.self_excited && here.coefficients[1] * node.coefficients[1] <= 0.0 {
+                // Beyond rest the same motions come again, begun half a period later.
+                let part = here.coefficients[1] / (here.coefficients[1] - node.coefficients[1]);
+                let near = here.parameter + part * (node.parameter - here.parameter);
+                return self.ended_at_rest(balance, nodes, near);
+            }
+            if let Some(place) = balance.frequency_place() {
+                let own = node.coefficients[place];
+                fastest = fastest.max(own);
+                if own < SLOW * fastest {
+                    return (nodes, BranchEnd::Slow);
+                }
+            }
+            let size = balance.extent(&node.coefficients);
+            if size > bound {
+                return (nodes, BranchEnd::Unbounded);
+            }
+            if nodes.len() > 8 && self.has_closed(&nodes[0], here, &node, weights) {
+                node = nodes[0].clone();
+                nodes.push(node);
+                return (nodes, BranchEnd::Closed);
+            }
+            nodes.push(node);
+            if iterations <= FEW {
+                step *= 1.4;
+            } else if iterations > MANY {
+                step *= 0.7;
+            }
+            step = step.min(self.longest);
+        }
+    }
+
+    /// These points, and the motion of amplitude zero behind them where the branch ends in one near this parameter.
+    fn ended_at_rest(&self, balance: &Balance, mut nodes: Vec<Node>, near: f64) -> (Vec<Node>, BranchEnd) {
+        let Some(rest) = self.rest_beside(balance, &nodes[nodes.len() - 1], near) else {
+            return (nodes, BranchEnd::Lost);
+        };
+        nodes.push(rest);
+        (nodes, BranchEnd::Rest)
+    }
+
+    /// The motion of amplitude zero beside a small one, near this parameter: where a self-excited motion is born.
+    pub(super) fn rest_beside(&self, balance: &Balance, here: &Node, near: f64) -> Option<Node> {
+        /// Of the largest motion, and of the range: what is beside.
+        const BESIDE: f64 = 0.1;
+        let small = BESIDE * self.size.max(self.ordinary);
+        if !balance.driven.self_excited || balance.extent(&here.coefficients) > small {
+            return None;
+        }
+        let [low, high] = self.range;
+        let born = hopf::near(balance.driven, here.coefficients[0], near, [small, high - low])?;
+        let far = (born.parameter - here.parameter).abs() > BESIDE * (high - low)
+            || (born.position - here.coefficients[0]).abs() > small;
+        if far || !(low..=high).contains(&born.parameter) {
+            return None;
+        }
+        let mut coefficients = DVector::zeros(balance.size());
+        coefficients[0] = born.position;
+        coefficients[balance.frequency_place()?] = born.frequency;
+        Some(Node {
+            coefficients,
+            parameter: born.parameter,
+            ..here.clone()
+        })
+    }
+
+    /// Whether the way from one point to the next passes the first one in its direction.
+    fn has_closed(&self, first: &Node, here: &Node, next: &Node, weights: Weights) -> bool {
+        let target = joined(&first.coefficients, first.parameter);
+        let from = joined(&here.coefficients, here.parameter);
+        let way = joined(&next.coefficients, next.parameter) - &from;
+        let length = weights.norm(&way);
+        let offset = &target - &from;
+        let along = weights.dot(&offset, &way) / length;
+        let across = (weights.dot(&offset, &offset) - along * along).max(0.0).sqrt();
+        let same_way = weights.dot(&first.tangent, &way) > 0.0;
+        same_way && (0.0..=length).contains(&along) && across < 0.1 * length
+    }
+
+    /// The point at the end of the range between a point inside and one outside.
+    fn at_bound(&self, balance: &Balance, inside: &Node, outside: &Node) -> Option<Node> {
+        let [low, high] = self.range;
+        let bound = if outside.parameter < low { low } else { high };
+        let way = outside.parameter - inside.parameter;
+        if bound == inside.parameter {
+            return None;
+        }
+        let part = (bound - inside.parameter) / way;
+        let guess = &inside.coefficients + (&outside.coefficients - &inside.coefficients) * part;
+        let coefficients = balance.solve(&guess, bound)?;
+        let weights = self.weights(balance, &inside.coefficients);
+        let jump = weights.norm(&joined(&(&coefficients - &guess), 0.0));
+        if jump > self.longest {
+            return None;
+        }
+        let linear = balance.linearised(&coefficients, bound)?;
+        let factors = bordered(&linear, &weights.row(&inside.tangent)).lu();
+        node(&factors, coefficients, bound, weights)
+    }
+
+    /// Motions beside a crossing of branches, one on either side: the direction in which the equations have a second solution, and
+    /// the motions a little way along it.
+    pub fn crossing(&self, balance: &Balance, at: &Node) -> Vec<Node> {
+        const APART: f64 = 0.02;
+        let size = balance.size();
+        let Some(linear) = balance.linearised(&at.coefficients, at.parameter) else {
+            return vec![];
+        };
+        let weights = self.weights(balance, &at.coefficients);
+        // In weighted variables, so that right angles are those of the steps.
+        let matrix = DMatrix::from_fn(size, size + 1, |i, j| match j < size {
+            true => linear.jacobian[(i, j)] / weights.of(j, size),
+            false => linear.by_parameter[i] / weights.of(j, size),
+        });
+        let square = matrix.transpose() * &matrix;
+        let eigen = square.symmetric_eigen();
+        let mut order: Vec<usize> = (0..=size).collect();
+        order.sort_by(|one, other| eigen.eigenvalues[*one].total_cmp(&eigen.eigenvalues[*other]));
+        let scale = |index: usize| weights.of(index, size);
+        let tangent = DVector::from_fn(size + 1, |index, _| at.tangent[index] * scale(index));
+        let tangent = &tangent / tangent.norm();
+        let candidates = order.iter().take(2).map(|index| {
+            let vector = eigen.eigenvectors.column(*index).into_owned();
+            let along = vector.dot(&tangent);
+            vector - &tangent * along
+        });
+        let Some(second) = candidates.max_by(|one, other| one.norm().total_cmp(&other.norm())) else {
+            return vec![];
+        };
+        let second = &second / second.norm();
+        let direction = DVector::from_fn(size + 1, |index, _| second[index] / scale(index));
+        let start = joined(&at.coefficients, at.parameter);
+        let found = [1.0, -1.0].map(|sign| {
+            let direction = &direction * sign;
+            let guess = &start + &direction * APART;
+            self.corrected(balance, &guess, &direction, weights)
+                .map(|(node, _)| node)
+        });
+        found.into_iter().flatten().collect()
+    }
+}
+
+/// A point with its tangent, from the factors of the bordered equations there. Their determinant has the same sign whatever direction
+/// stands in the last row, as long as the tangent goes the same way.
+fn node(factors: &LU<f64, Dyn, Dyn>, coefficients: DVector<f64>, parameter: f64, weights: Weights) -> Option<Node> {
+    let size = coefficients.len();
+    let mut right = DVector::zeros(size + 1);
+    right[size] = 1.0;
+    let tangent = factors.solve(&right)?;
+    let length = weights.norm(&tangent);
+    if !(length > 0.0 && length.is_finite()) {
+        return None;
+    }
+    Some(Node {
+        coefficients,
+        parameter,
+        tangent: tangent / length,
+        orientation: sign_of_determinant(factors),
+        truth: None,
+    })
+}
+
+/// The sign of a determinant, which itself may be beyond doubles.
+fn sign_of_determinant(factors: &LU<f64, Dyn, Dyn>) -> f64 {
+    let upper = factors.u();
+    let negative = upper.diagonal().iter().filter(|entry| **entry < 0.0).count();
+    let sign: f64 = factors.p().determinant();
+    if negative % 2 == 1 { -sign } else { sign }
+}

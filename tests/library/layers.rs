@@ -1,6 +1,7 @@
-//! A module uses only those that stand below it: the file tree is the way of the data.
+//! A module uses only those that stand below it: the file tree is the way of the data. Between crates the compiler holds that;
+//! here it is held inside of them, and the wall between the judge and the methods with it.
 //!
-//! Every path in `src/` that starts at the root of the crate is read: `crate::name`, `crate::{a, b::c}`, a chain of
+//! Every path of a source that starts at the root of its crate is read: `crate::name`, `crate::{a, b::c}`, a chain of
 //! `super` long enough to reach the root, and the names that `lib.rs` hands on (`crate::Oscillator` is the module
 //! `oscillator`). Unit tests may look anywhere: they hold one layer against the others.
 
@@ -10,10 +11,12 @@ use std::path::{Path, PathBuf};
 struct Layers(Vec<Vec<String>>);
 
 impl Layers {
-    /// The layers of `lib.rs`: its modules in order, those between two empty lines together, and on top of them the program.
-    fn of(library: &str) -> Self {
+    /// The layers of the crates, lowest first: the modules of each `lib.rs` in order, those between two empty lines together, and on
+    /// top of them the program.
+    fn of_crates() -> Self {
         let mut layers: Vec<Vec<String>> = Vec::new();
-        for block in library.split("\n\n") {
+        let libraries: Vec<String> = source_folders().iter().map(|folder| library(folder)).collect();
+        for block in libraries.iter().flat_map(|library| library.split("\n\n")) {
             let names: Vec<String> = block.lines().filter_map(declared).collect();
             if !names.is_empty() {
                 layers.push(names);
@@ -23,16 +26,55 @@ impl Layers {
         Self(layers)
     }
 
-    fn of_crate() -> Self {
-        let library = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/lib.rs");
-        Self::of(&std::fs::read_to_string(library).expect("src/lib.rs"))
-    }
-
     fn layer(&self, module: &str) -> Option<usize> {
         self.0
             .iter()
             .position(|modules| modules.iter().any(|name| name == module))
     }
+}
+
+/// The members of the workspace by the way of the data, lowest first; the package of the program stands above them all.
+const CRATES: [&str; 7] = [
+    "numeric",
+    "expr",
+    "series",
+    "dynamics",
+    "oscillator",
+    "verify",
+    "impact",
+];
+
+/// The folders of sources, lowest crate first.
+fn source_folders() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let members = CRATES.iter().map(|name| root.join("crates").join(name).join("src"));
+    members.chain([root.join("src")]).collect()
+}
+
+/// The root of a crate.
+fn library(folder: &Path) -> String {
+    let path = folder.join("lib.rs");
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Each source file with its path inside its folder of sources.
+fn sources() -> Vec<(PathBuf, PathBuf)> {
+    let mut sources = Vec::new();
+    for folder in source_folders() {
+        for file in source_files(&folder) {
+            let inside = file.strip_prefix(&folder).expect("a file in src").to_path_buf();
+            sources.push((file, inside));
+        }
+    }
+    sources
+}
+
+/// The names that the crates hand on from their modules.
+fn all_handed_on() -> Vec<(String, String)> {
+    source_folders()
+        .iter()
+        .flat_map(|folder| handed_on(&library(folder)))
+        .collect()
 }
 
 /// The module that a line declares, public or not.
@@ -145,6 +187,10 @@ fn offences(source: &Source, handed_on: &[(String, String)], layers: &Layers) ->
 fn handed_on(library: &str) -> Vec<(String, String)> {
     let line = |line: &str| {
         let path = line.strip_prefix("pub use ")?.strip_suffix(';')?;
+        // A whole module of a lower crate keeps its name.
+        if path.starts_with("lindstedt_") {
+            return None;
+        }
         let (module, names) = path.split_once("::")?;
         let names = names.rsplit("::").next()?.trim_matches(['{', '}']);
         let module = module.to_owned();
@@ -183,17 +229,14 @@ fn module_path(inside: &Path) -> Vec<String> {
 
 #[test]
 fn lower_layers_never_use_upper_ones() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let library = std::fs::read_to_string(folder.join("lib.rs")).expect("src/lib.rs");
-    let handed_on = handed_on(&library);
+    let handed_on = all_handed_on();
     for name in ["Oscillator", "Motion", "Method", "judge"] {
         assert!(handed_on.iter().any(|entry| entry.0 == name), "{name}: {handed_on:?}");
     }
-    let layers = Layers::of(&library);
+    let layers = Layers::of_crates();
     let (mut wrong, mut seen, mut uses_seen) = (Vec::new(), Vec::new(), 0);
-    for file in source_files(&folder) {
-        let inside = file.strip_prefix(&folder).expect("a file in src");
-        let names = module_path(inside);
+    for (file, inside) in sources() {
+        let names = module_path(&inside);
         let module = names.first().expect("a name").as_str();
         if ["lib", "main"].contains(&module) {
             continue;
@@ -207,16 +250,12 @@ fn lower_layers_never_use_upper_ones() {
         uses_seen += uses(&source, &handed_on).len();
         if layers.layer(module).is_none() {
             wrong.push(format!(
-                "src/{}: belongs to no layer, give it a place in src/lib.rs",
-                inside.display()
+                "{}: belongs to no layer, give it a place in lib.rs",
+                file.display()
             ));
         }
         let offences = offences(&source, &handed_on, &layers);
-        wrong.extend(
-            offences
-                .iter()
-                .map(|offence| format!("src/{}:{offence}", inside.display())),
-        );
+        wrong.extend(offences.iter().map(|offence| format!("{}:{offence}", file.display())));
         seen.push(module.to_owned());
     }
     assert!(wrong.is_empty(), "the layers are broken:\n{}", wrong.join("\n"));
@@ -228,39 +267,79 @@ fn lower_layers_never_use_upper_ones() {
     // A layer without a file would protect nothing.
     let modules = layers.0.iter().flatten();
     let empty: Vec<_> = modules.filter(|name| !seen.contains(name)).collect();
-    assert!(empty.is_empty(), "no file in src/ belongs to {empty:?}");
+    assert!(empty.is_empty(), "no file belongs to {empty:?}");
 }
 
-/// The documentation of the crate lists the public modules, and `ARCHITECTURE.md` all of them, as `lib.rs` declares them.
+/// The members of the workspace are those that are held here, and each uses only those before it: what the compiler holds is
+/// the order that is told.
+#[test]
+fn crates_use_only_those_before_them() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = std::fs::read_dir(root.join("crates")).expect("crates");
+    let mut folders: Vec<String> = folders
+        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .collect();
+    folders.sort();
+    let mut named = CRATES.to_vec();
+    named.sort_unstable();
+    assert_eq!(folders, named);
+    for (place, name) in CRATES.iter().enumerate() {
+        let manifest = std::fs::read_to_string(root.join("crates").join(name).join("Cargo.toml")).expect("a manifest");
+        let used = manifest.split("[dependencies]").nth(1).expect("dependencies");
+        let used = used.split("[dev-dependencies]").next().unwrap_or(used);
+        for line in used.lines() {
+            let Some(used) = line.strip_prefix("lindstedt-") else {
+                continue;
+            };
+            let used = used.split(['.', ' ']).next().unwrap_or(used);
+            assert!(CRATES[..place].contains(&used), "{name} uses {used}");
+        }
+    }
+}
+
+/// The documentation of the crate lists the modules that it hands on, and `ARCHITECTURE.md` all modules crate by crate.
 #[test]
 fn one_order_is_told_everywhere() {
-    let read = |name: &str| {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
-        std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{name}: {error}"))
-    };
-    let layers = Layers::of_crate().0;
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let facade = library(&root.join("src"));
     let row = |line: &str| {
         let name = line.strip_prefix("//! | [`")?.split("`] | ").next()?;
         Some(name.to_owned())
     };
-    let library = read("src/lib.rs");
-    let documented: Vec<String> = library.lines().filter_map(row).collect();
-    let public = library.lines().filter(|line| line.starts_with("pub mod "));
-    assert_eq!(documented, public.filter_map(declared).collect::<Vec<_>>());
-    let row = |line: &str| {
-        let names = line.strip_prefix("    ")?.split("  ").next()?;
-        Some(names.split(' ').map(str::to_owned).collect())
-    };
-    let page = read("ARCHITECTURE.md");
-    let first = page.split("\n## ").next().unwrap_or(&page);
-    let drawn: Vec<Vec<String>> = first.lines().filter_map(row).collect();
-    assert_eq!(drawn, layers);
+    let mut documented: Vec<String> = facade.lines().filter_map(row).collect();
+    let handed = facade.lines().filter_map(|line| {
+        let path = line.strip_prefix("pub use lindstedt_")?.strip_suffix(';')?;
+        let names = path.split_once("::")?.1.trim_matches(['{', '}']);
+        Some(names.split(", ").map(str::to_owned).collect::<Vec<_>>())
+    });
+    let own = facade
+        .lines()
+        .filter(|line| line.starts_with("pub mod "))
+        .filter_map(declared);
+    let mut public: Vec<String> = handed.flatten().chain(own).collect();
+    documented.sort();
+    public.sort();
+    assert_eq!(documented, public);
+    let page = std::fs::read_to_string(root.join("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
+    assert!(page.lines().count() <= 120, "a map is read to its end");
+    for folder in source_folders() {
+        let text = library(&folder);
+        let modules: Vec<String> = text.lines().filter_map(declared).collect();
+        let told = |line: &&str| {
+            let words: Vec<&str> = line.split_whitespace().collect();
+            modules.iter().all(|module| words.contains(&module.as_str()))
+        };
+        assert!(
+            page.lines().any(|line| told(&line)),
+            "no line of ARCHITECTURE.md has {modules:?}"
+        );
+    }
 }
 
 /// In `numeric` Runge-Kutta stands below the periods and the limit cycles, which do not use each other.
 #[test]
 fn motions_in_numbers_stand_on_runge_kutta_alone() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/numeric");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/numeric/src/numeric");
     let used = |text: &str| {
         let names = |name: &&str| text.contains(&format!("{name}::")) || text.contains(&format!("numeric::{name};"));
         ["ode", "period", "return_map"]
@@ -282,13 +361,12 @@ fn motions_in_numbers_stand_on_runge_kutta_alone() {
 /// The crate of the integers of any length is named where numbers live: elsewhere they are `exact::Integer`.
 #[test]
 fn long_integers_come_from_one_place() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let named = |file: &PathBuf| {
+    let named = |(file, _): &(PathBuf, PathBuf)| {
         let text = std::fs::read_to_string(file).expect("a source file");
         ["dashu_int", "num_rational"].iter().any(|name| text.contains(name))
     };
-    let files = source_files(&folder).into_iter().filter(named);
-    let (inside, outside): (Vec<_>, Vec<_>) = files.partition(|file| file.starts_with(folder.join("exact")));
+    let files = sources().into_iter().filter(named).map(|(_, inside)| inside);
+    let (inside, outside): (Vec<_>, Vec<_>) = files.partition(|file| file.starts_with("exact"));
     assert!(!inside.is_empty());
     assert_eq!(outside, Vec::<PathBuf>::new());
 }
@@ -368,18 +446,15 @@ fn over_the_wall(file: &str, text: &str, handed_on: &[(String, String)]) -> Vec<
 /// What is judged and the judge share numbers and the equation, not a way to the answer.
 #[test]
 fn the_judge_and_the_methods_share_no_truth() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let library = std::fs::read_to_string(folder.join("lib.rs")).expect("src/lib.rs");
-    let handed_on = handed_on(&library);
+    let handed_on = all_handed_on();
     let (mut wrong, mut truths) = (Vec::new(), 0);
-    for path in source_files(&folder) {
-        let inside = path.strip_prefix(&folder).expect("a file in src");
+    for (path, inside) in sources() {
         let file: Vec<_> = inside.iter().map(|part| part.to_string_lossy()).collect();
         let file = file.join("/");
         truths += usize::from(TRUTH.contains(&file.as_str()));
         let text = std::fs::read_to_string(&path).expect("a source file");
         let crossed = over_the_wall(&file, &text, &handed_on);
-        wrong.extend(crossed.iter().map(|message| format!("src/{file}:{message}")));
+        wrong.extend(crossed.iter().map(|message| format!("{file}:{message}")));
     }
     assert!(wrong.is_empty(), "the wall is broken:\n{}", wrong.join("\n"));
     assert_eq!(truths, TRUTH.len(), "a file of the truth is gone");
@@ -476,7 +551,7 @@ fn a_hole_in_the_wall_is_seen() {
 #[test]
 fn an_upward_use_is_seen() {
     let handed_on = handed_on("pub use oscillator::Oscillator;\npub mod numeric;\npub use symbol::Symbol;\n");
-    let layers = Layers::of_crate();
+    let layers = Layers::of_crates();
     let found = |module: &str, depth: usize, text: &str| offences(&Source { module, depth, text }, &handed_on, &layers);
     for (module, depth, text, line, used) in [
         ("series", 2, "use crate::method::solve;", 1, "method"),
@@ -543,7 +618,7 @@ fn files_below(folder: &Path, found: &mut Vec<String>) {
 fn every_file_can_be_checked_out_on_every_system() {
     const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "conin$", "conout$"];
     let mut files = Vec::new();
-    for folder in ["src", "tests", "examples", "docs", "snapshots", "benches"] {
+    for folder in ["src", "crates", "tests", "examples", "docs", "snapshots", "benches"] {
         files_below(Path::new(folder), &mut files);
     }
     assert!(files.len() > 1000, "{}", files.len());

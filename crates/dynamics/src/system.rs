@@ -8,6 +8,7 @@
 //! its argument tells beforehand, and steps end beside it.
 //!
 //! ```
+//! # use lindstedt_dynamics as lindstedt;
 //! use lindstedt::expr::parse_expression;
 //! use lindstedt::system::{Event, Options, System};
 //!
@@ -40,6 +41,7 @@ use taylor::Step;
 /// A pendulum of two equal links: angles a and b from the vertical, rates p and q; length, mass and gravity are one.
 ///
 /// ```
+/// # use lindstedt_dynamics as lindstedt;
 /// use lindstedt::system::{Options, System};
 /// let links = System::parse(&[
 ///     ("a", "p"),
@@ -170,6 +172,7 @@ impl Event {
     /// Counts only where the expression grows through zero.
     ///
     /// ```
+    /// # use lindstedt_dynamics as lindstedt;
     /// use lindstedt::expr::parse_expression;
     /// use lindstedt::system::{Event, Options, System};
     ///
@@ -389,6 +392,7 @@ impl System {
     /// [`SystemError`] where the run cannot begin; one that ends early says so by [`Path::reason`].
     ///
     /// ```
+    /// # use lindstedt_dynamics as lindstedt;
     /// use lindstedt::system::{Integrator, Options, System};
     ///
     /// // Prey and predator of Lotka and Volterra, by both integrators.

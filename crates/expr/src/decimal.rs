@@ -11,7 +11,7 @@ use crate::exact::{Integer, Rational};
 /// Six significant digits or more, as people write them: `0.860608`, `3.0407e7`, `-1.49`.
 ///
 /// ```
-/// use lindstedt::export::decimal;
+/// use lindstedt_expr::decimal::decimal;
 ///
 /// assert_eq!([decimal(0.8606080), decimal(3.0407e7)], ["0.860608", "3.0407e7"]);
 /// ```

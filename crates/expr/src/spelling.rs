@@ -5,7 +5,7 @@ use strsim::levenshtein;
 /// The name among `known` that needs the fewest changes to become `typed`, where at most a third of it changes.
 ///
 /// ```
-/// use lindstedt::catalog::nearest;
+/// use lindstedt_expr::spelling::nearest;
 ///
 /// assert_eq!(nearest("pendulm", ["duffing", "pendulum"]), Some("pendulum"));
 /// ```

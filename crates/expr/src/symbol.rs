@@ -12,6 +12,7 @@ use std::sync::{LazyLock, Mutex, PoisonError};
 /// The derivative of a coordinate is the same name with primes: `x'` is the velocity, `x''` the acceleration.
 ///
 /// ```
+/// # use lindstedt_expr as lindstedt;
 /// use lindstedt::Symbol;
 /// let x = Symbol::new("x");
 /// assert_eq!(x.derivative().name(), "x'");
@@ -73,6 +74,7 @@ impl Symbol {
 /// Every name in an answer that is not the user's own comes from here or from [`fresh_stem`].
 ///
 /// ```
+/// # use lindstedt_expr as lindstedt;
 /// use lindstedt::expr::fresh;
 /// assert_eq!(fresh("hbar", &[]).name(), "hbar");
 /// assert_eq!(fresh("hbar", &["hbar".into(), "hbar_".into()]).name(), "hbar__");
@@ -88,6 +90,7 @@ pub fn fresh(wanted: &str, taken: &[Symbol]) -> Symbol {
 /// As [`fresh`] for a whole family `stem0`, `stem1`, ..., `stem_n`: a stem that no name in `taken` continues with digits.
 ///
 /// ```
+/// # use lindstedt_expr as lindstedt;
 /// use lindstedt::expr::fresh_stem;
 /// assert_eq!(fresh_stem("W", &["k".into()]), "W");
 /// assert_eq!(fresh_stem("W", &["W2".into()]), "W_");
@@ -107,6 +110,7 @@ pub fn fresh_stem(wanted: &str, taken: &[Symbol]) -> String {
 /// The name of the phase of a motion: `theta`, or `phi` where the equation calls something of its own `theta`.
 ///
 /// ```
+/// # use lindstedt_expr as lindstedt;
 /// use lindstedt::expr::phase_beside;
 /// assert_eq!(phase_beside(&["x".into()]).name(), "theta");
 /// assert_eq!(phase_beside(&["theta".into()]).name(), "phi");

@@ -4,6 +4,7 @@
 //! wrote the equation. What is no number, or is given twice, is a [`ValueError`].
 //!
 //! ```
+//! # use lindstedt_expr as lindstedt;
 //! use lindstedt::Values;
 //!
 //! let at: Values = "A = 3/2, eps = 1".parse()?;

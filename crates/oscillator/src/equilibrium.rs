@@ -11,7 +11,7 @@
 //! Oscillations*, World Scientific 2010, section 2.3.3). A motion that is pulled faster than that falls in.
 //!
 //! An unstable equilibrium is answered for only where it is asked for, and where motions run through it: those of an odd force over
-//! the wells on both sides ([`crate::conservative::passage`]).
+//! the wells on both sides (`crate::conservative::passage`).
 //!
 //! The force is moved exactly: `f(x_e + x) - f(x_e)`. A fraction or a multiple of pi is put in; any other equilibrium enters as
 //! a symbol of its own, whose value is a definition of the answer. Only a polynomial asked for has numbers for coefficients.
@@ -199,6 +199,7 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
 /// With these numbers `x = 0`, or the equilibrium asked for, is not stable, or there is none.
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::{Oscillator, Values, method::with_numbers_where_needed};
 ///
 /// let loaded = Oscillator::parse("x'' + x + x^5 - g = 0")?;

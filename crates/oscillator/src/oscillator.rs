@@ -344,6 +344,7 @@ impl Oscillator {
     /// See [`OscillatorError`].
     ///
     /// ```
+    /// # use lindstedt_oscillator as lindstedt;
     /// use lindstedt::Oscillator;
     ///
     /// let van_der_pol = Oscillator::parse("x'' - mu*(1 - x^2)*x' + x = 0")?;
@@ -440,6 +441,7 @@ impl Oscillator {
     /// An expression beyond all limits.
     ///
     /// ```
+    /// # use lindstedt_oscillator as lindstedt;
     /// use lindstedt::Oscillator;
     ///
     /// let (oscillator, renamed) = Oscillator::parse("x'' + omega^2*x + A*x^3 = 0")?.with_names_of_answers_free()?;
@@ -479,6 +481,7 @@ impl Oscillator {
     /// Parameters whose names look like something else, `e` or `sinx`, each with how that would be written.
     ///
     /// ```
+    /// # use lindstedt_oscillator as lindstedt;
     /// use lindstedt::Oscillator;
     ///
     /// let oscillator = Oscillator::parse("x'' + e*x + sinx = 0")?;
@@ -689,6 +692,7 @@ impl Oscillator {
     /// A force at rest, a missing linear restoring force, or a term that is not small, not analytic or no polynomial.
     ///
     /// ```
+    /// # use lindstedt_oscillator as lindstedt;
     /// use lindstedt::{Oscillator, oscillator::SmallParameter};
     ///
     /// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;

@@ -215,7 +215,7 @@ pub struct Solution {
     pub numerical: bool,
     /// What is known of where the formula holds.
     pub validity: Vec<Note>,
-    /// How far the series of omega^2 converges, where that has been [looked for](crate::verify::converges).
+    /// How far the series of omega^2 converges, where that has been looked for.
     pub convergence: Option<Convergence>,
     /// The derivation, order by order, of an expansion.
     pub steps: Vec<Step>,

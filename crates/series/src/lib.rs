@@ -2,7 +2,7 @@
 //!
 //! In: an expression, an order. Out: coefficients of any ring, order by order, none computed twice.
 //!
-//! Five names to know: [`series::FourierSeries`]; [`series::taylor`], the expansion of an expression; [`series::recurrence`], the
+//! Five names to know: [`series::FourierSeries`]; [`mod@series::taylor`], the expansion of an expression; [`series::recurrence`], the
 //! same as recurrences of numbers; [`series::singularity`], where a long series ceases to converge; [`series::terms`], sums as they
 //! are written.
 

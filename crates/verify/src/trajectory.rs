@@ -276,6 +276,7 @@ impl Course {
     /// [`TrajectoryError`]; a run that ends early says so by [`Trajectory::end`].
     ///
     /// ```
+    /// # use lindstedt_verify as lindstedt;
     /// use lindstedt::Oscillator;
     /// use lindstedt::trajectory::Course;
     ///

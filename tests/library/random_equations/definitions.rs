@@ -1,5 +1,5 @@
 //! Methods of one term, series and their quotients, each from its definition in the literature: omega^2 at one amplitude,
-//! without dimensions. The references are those at the head of the method's file in `src/method/`.
+//! without dimensions. The references are those at the head of the method's file in `crates/oscillator/src/method/`.
 
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 

@@ -348,6 +348,7 @@ impl Mechanism {
     /// A name without a unit, or the first term that is measured in something else than its part.
     ///
     /// ```
+    /// # use lindstedt_dynamics as lindstedt;
     /// use lindstedt::mechanics::{Dimension, Mechanism};
     ///
     /// let slip = Mechanism::parse(&["x"], "m*L^2*x'^2/2", "m*g*(1 - cos(x))")?;

@@ -45,6 +45,7 @@ impl Rest {
 /// Forces too long to be written out.
 ///
 /// ```
+/// # use lindstedt_dynamics as lindstedt;
 /// use lindstedt::mechanics::{Mechanism, Place, equilibria};
 ///
 /// let spring = Mechanism::parse(&["r", "x"], "m*(r'^2 + r^2*x'^2)/2", "k*(r - L)^2/2 - m*g*r*cos(x)")?;

@@ -76,6 +76,7 @@ impl Groups {
     /// [`NoGroups`].
     ///
     /// ```
+    /// # use lindstedt_dynamics as lindstedt;
     /// use lindstedt::mechanics::{Dimension, Groups, Mechanism};
     ///
     /// let mut pendulum = Mechanism::parse(&["x"], "m*L^2*x'^2/2", "-m*g*L*cos(x)")?;

@@ -11,6 +11,7 @@
 //! dimensionless [`Groups`] on which the motion depends.
 //!
 //! ```
+//! # use lindstedt_dynamics as lindstedt;
 //! use lindstedt::mechanics::Mechanism;
 //!
 //! let pendulum = Mechanism::parse(&["x"], "m*L^2*x'^2/2", "m*g*L*(1 - cos(x))")?;
@@ -147,6 +148,7 @@ impl Mechanism {
     /// [`MechanicsError`] names the part and the symbol.
     ///
     /// ```
+    /// # use lindstedt_dynamics as lindstedt;
     /// use lindstedt::mechanics::Mechanism;
     ///
     /// let cart = Mechanism::parse(

@@ -78,6 +78,7 @@ impl Modes {
     /// Derivatives too long to be written out, or without a value there.
     ///
     /// ```
+    /// # use lindstedt_dynamics as lindstedt;
     /// use lindstedt::mechanics::{Mechanism, Modes, equilibria};
     ///
     /// let pendulum = Mechanism::parse(&["x"], "m*L^2*x'^2/2", "-m*g*L*cos(x)")?.equations()?;

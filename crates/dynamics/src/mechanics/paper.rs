@@ -100,6 +100,7 @@ pub enum PaperError {
 /// None for the mechanism above.
 ///
 /// ```
+/// # use lindstedt_dynamics as lindstedt;
 /// use lindstedt::mechanics::paper::findings;
 ///
 /// let findings = findings()?;

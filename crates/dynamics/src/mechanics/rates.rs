@@ -20,6 +20,7 @@ impl Equations {
     /// A mass matrix that is singular.
     ///
     /// ```
+    /// # use lindstedt_dynamics as lindstedt;
     /// use lindstedt::mechanics::Mechanism;
     /// use lindstedt::system::{Options, System};
     ///

@@ -99,6 +99,7 @@ impl MechanismQuestion {
 /// [`StudyError`] names the term or the name.
 ///
 /// ```
+/// # use lindstedt_dynamics as lindstedt;
 /// use lindstedt::mechanics::{MechanismQuestion, study};
 ///
 /// let study = study(MechanismQuestion::of_paper())?;

@@ -125,6 +125,7 @@ pub fn from_f64(value: f64) -> Option<Rational> {
 /// The first convergent of the continued fraction of a value that is as near to it as this, which is mostly a short one.
 ///
 /// ```
+/// # use lindstedt_expr as lindstedt;
 /// use lindstedt::exact::{convergent, ratio};
 ///
 /// assert_eq!(convergent(&ratio(314_159_265, 100_000_000), &ratio(1, 100)), ratio(22, 7));

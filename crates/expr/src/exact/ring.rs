@@ -17,7 +17,7 @@
 //!
 //! A field may still be unable to divide by some integers, as residues are by multiples of their prime. Such a divisor stays in
 //! the denominator of the series too, so that no operation on series fails or gives a wrong value;
-//! [`FourierSeries::divided`](crate::series::FourierSeries::divided) tells of it, and the elimination of secular terms, which asks
+//! `FourierSeries::divided` tells of it, and the elimination of secular terms, which asks
 //! after every order, ends with that as its error.
 //!
 //! Nothing is left out of a series but what is [certainly zero](Ring::is_certainly_zero). An interval that contains zero stays,

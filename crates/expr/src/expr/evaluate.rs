@@ -74,6 +74,7 @@ impl Expr {
 /// Nothing is allocated unless the list has more than 64 values.
 ///
 /// ```
+/// # use lindstedt_expr as lindstedt;
 /// use lindstedt::expr::{CompiledFunction, parse_expression};
 /// let force = parse_expression("sin(x) + gamma*(x - xc)^1.5*H(x - xc)")?;
 /// let force = CompiledFunction::new(&force, &["x".into(), "xc".into(), "gamma".into()])?;

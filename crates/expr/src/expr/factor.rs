@@ -14,6 +14,7 @@ impl Expr {
     /// read.
     ///
     /// ```
+    /// # use lindstedt_expr as lindstedt;
     /// use lindstedt::expr::Expr;
     /// let law: Expr = "4*A/3 - sqrt(2)*A/3".parse()?;
     /// assert_eq!(law.factored().to_string(), "A*(4 - sqrt(2))/3");

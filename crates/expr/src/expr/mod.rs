@@ -14,6 +14,7 @@
 //! What has no value (`1/0`, `log(0)`, `0^0`, `sqrt(-1)`) is an [`ExprError`], not a silent infinity.
 //!
 //! ```
+//! # use lindstedt_expr as lindstedt;
 //! use lindstedt::expr::{Expr, parse_expression};
 //! let force: Expr = parse_expression("2*zeta*x' + sin(x) - 0*k")?;
 //! assert_eq!(force.to_string(), "2*zeta*x' + sin(x)");

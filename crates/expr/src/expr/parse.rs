@@ -36,7 +36,7 @@ use error::shortened;
 use lexer::{Kind, Token};
 
 /// Names of the amplitudes and the frequency in an answer. No coordinate may have one of them, and where a parameter has one,
-/// [`Oscillator::with_names_of_answers_free`](crate::Oscillator::with_names_of_answers_free) gives it another before a formula is
+/// `Oscillator::with_names_of_answers_free` gives it another before a formula is
 /// derived. `omega0` and `theta` are none of them: where an equation uses them for something of its own, the answer writes
 /// `omega0_` and `phi`.
 pub const NAMES_OF_ANSWERS: [&str; 3] = ["A", "a", "omega"];
@@ -79,6 +79,7 @@ impl fmt::Display for Equation {
 /// See [`ParseError`].
 ///
 /// ```
+/// # use lindstedt_expr as lindstedt;
 /// use lindstedt::expr::parse_expression;
 ///
 /// assert_eq!(parse_expression("x + x + 1/2*2")?.to_string(), "1 + 2*x");
@@ -104,6 +105,7 @@ pub fn parse_expression(text: &str) -> Result<Expr, ParseError> {
 /// See [`ParseError`]; also for a coordinate with one of the [`NAMES_OF_ANSWERS`], and for primes on more than a letter, a Greek one by name, with or without an index.
 ///
 /// ```
+/// # use lindstedt_expr as lindstedt;
 /// use lindstedt::expr::parse_equation;
 ///
 /// assert_eq!(parse_equation("y'' + sin(y) = 0")?.coordinate, "y".into());

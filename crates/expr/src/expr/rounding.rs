@@ -52,6 +52,7 @@ impl Expr {
     /// [`LostDigits`] names the symbol.
     ///
     /// ```
+    /// # use lindstedt_expr as lindstedt;
     /// use lindstedt::expr::Expr;
     /// let force: Expr = "sin(x)".parse()?;
     /// assert!(force.check_digits(&[("x".into(), 1e17)].into(), &["x".into()]).is_err());
@@ -100,6 +101,7 @@ impl Expr {
     /// The value with a bound of the error that rounding makes, given the same of the symbols; `None` where a symbol is missing.
     ///
     /// ```
+    /// # use lindstedt_expr as lindstedt;
     /// use lindstedt::expr::Expr;
     /// let law: Expr = "(1 - cos(A))/A^2".parse()?;
     /// let (value, error) = law.evaluate_rounded(&|_| Some((1e-3, 0.0))).unwrap();

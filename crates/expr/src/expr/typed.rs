@@ -55,6 +55,7 @@ impl Quotation {
     /// An expression in words of its own.
     ///
     /// ```
+    /// # use lindstedt_expr as lindstedt;
     /// use lindstedt::expr::{Quotation, parse_expression};
     ///
     /// let damping = parse_expression("0.5*x'")?;

@@ -76,6 +76,7 @@ pub const BASELINE_DURATIONS: f64 = 4.0;
 /// As [`simulate`].
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Integrator, Model, Settings, Start, baseline, simulate};
 ///
 /// let model = Model { zeta: 0.02, mu: 1e6, gamma: 1e7, ..Model::default() };

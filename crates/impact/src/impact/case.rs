@@ -205,6 +205,7 @@ impl Case {
     /// [`CaseError`] names the parameter that makes none.
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::{Case, Integrator, Parameter, Settings, simulate};
     ///
     /// let mut case = Case { zeta: 0.02, ..Case::default() };
@@ -344,6 +345,7 @@ impl Case {
     /// As [`Case::motion`].
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::{Case, ContactDamping};
     ///
     /// let case = Case { contact_damping: ContactDamping::MuOverGamma(0.1), zeta: 0.02, ..Case::default() };

@@ -100,6 +100,7 @@ pub struct Column {
 /// A barrier out of reach, an amplitude beyond the law or the well, a stiffness that is not positive: see [`ImpactError`].
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Reading, Setup, solve};
 ///
 /// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;

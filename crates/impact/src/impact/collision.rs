@@ -241,6 +241,7 @@ impl Collision<'_> {
     /// [`CollisionError::OutsideTheWell`] where the released pendulum does not swing that far.
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::{Collision, hertz::elastic_force};
     ///
     /// let pendulum = Collision {

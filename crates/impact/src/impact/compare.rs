@@ -110,6 +110,7 @@ impl ImpactRow {
 /// As [`solve`](super::solve()), but a method that does not apply is a row of its own.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Setup, compare};
 ///
 /// let table = compare(Setup { tolerance: 1e-3, ..Setup::default() })?;

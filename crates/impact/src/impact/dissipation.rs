@@ -59,6 +59,7 @@ impl SpeedUnit {
     /// A speed in this unit, of a pendulum of this length in m under this gravity in m/s^2, in units of L omega.
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::SpeedUnit;
     ///
     /// assert_eq!(SpeedUnit::MetresPerSecond.dimensionless(3.0, 0.25, 9.0), 2.0); // sqrt(g L) = 1.5 m/s
@@ -174,6 +175,7 @@ impl ContactDamping {
     /// [`DampingError`]: a damping that is negative or too large; a restitution that is none, or at no speed.
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::{ContactDamping, ContactScales};
     ///
     /// let scales = ContactScales { gamma: 1e6, mass: 0.02, length: 0.25, gravity: 9.0, speed: Some(1.25) };

@@ -119,6 +119,7 @@ pub fn elastic_force(depth: f64) -> f64 {
 /// [`NotPositive`] for a stiffness or a speed that is not a positive number.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::hertz::{penetration, stored_energy};
 ///
 /// let deepest = penetration(1e6, 0.5)?; // rad
@@ -150,6 +151,7 @@ pub(super) fn greatest_depth(stiffness: f64, speed: f64) -> f64 {
 /// As [`penetration`].
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::hertz::{duration, penetration};
 ///
 /// assert!((penetration(1.25e6, 1.0)? - 1e-6_f64.powf(0.4)).abs() < 1e-12); // rad

@@ -141,6 +141,7 @@ pub enum LinearisationError {
 /// [`LinearisationError`]: a depth that is not positive, a force that is not finite or does not push back.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Rule, fit, hertz::elastic_force};
 ///
 /// let line = fit(Rule::EqualPeak, elastic_force, 0.25)?;

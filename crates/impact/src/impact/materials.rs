@@ -63,6 +63,7 @@ impl Material {
     /// The materials of the paper's Table 2: each modulus alone, as in its equation (3).
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::Material;
     ///
     /// let names: Vec<String> = Material::of_table_2().into_iter().map(|material| material.name).collect();
@@ -160,6 +161,7 @@ pub struct Course {
 /// As [`simulate`].
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Integrator, Model, Settings, Start, course};
 ///
 /// let model = Model { zeta: 0.02, mu: 3e6, ..Model::default() };
@@ -297,6 +299,7 @@ pub struct MaterialStudy {
 /// [`MaterialsError`]: no material, a design or a material that makes no motion.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{MaterialQuestion, study_materials};
 ///
 /// let study = study_materials(MaterialQuestion::default())?;

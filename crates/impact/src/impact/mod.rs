@@ -36,6 +36,7 @@
 //! - [`friction`]: equation (6) beside Coulomb's law, at some speeds and near rest.
 //!
 //! ```
+//! # use lindstedt_impact as lindstedt;
 //! use lindstedt::impact::hertz::{Design, elastic_force};
 //! use lindstedt::impact::Rule;
 //! use lindstedt::impact::{ContactSpeed, Swing, three_phases};

@@ -156,6 +156,7 @@ pub enum PhasesError {
 /// frequency law or outside the well.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{ContactSpeed, Rule, Swing, hertz::elastic_force, three_phases};
 ///
 /// let swing = Swing {

@@ -57,17 +57,6 @@ impl YieldCheck {
 
 impl Impact {
     /// The same numbers in SI units; nothing where no units are known, or where a number is beyond the range of doubles.
-    ///
-    /// ```
-    /// use lindstedt::impact::{Setup, solve};
-    /// use lindstedt::problem::Problem;
-    ///
-    /// let file: Problem = "[pendulum]\nmass = 0.02\nlength = 0.25".parse()?;
-    /// let si = solve(Setup::try_from(&file)?)?.si().ok_or("no units")?;
-    /// assert!((si.units.time() - (0.25_f64 / 9.81).sqrt()).abs() < 1e-15); // s
-    /// assert!(si.peak_force.runge_kutta > 1000.0 * 0.02 * 9.81); // N
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn si(&self) -> Option<SiImpact> {
         let units = self.setup.units?;
         let gamma = self.setup.stiffness;

@@ -59,6 +59,7 @@ const SMALLEST: f64 = 1e-100;
 /// [`SimulationError`] where it cannot begin. One that ends early is no error: ask [`Simulation::stop`].
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Integrator, Model, Settings, Start, simulate};
 ///
 /// let model = Model { gamma: 1e6, zeta: 0.02, mu: 1e5, ..Model::default() };
@@ -91,6 +92,7 @@ pub fn simulate(
 /// ```
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Integrator, Model, Settings, Start, known_until, simulate};
 ///
 /// let start = Start { x: -1.5, velocity: 0.0 };
@@ -129,6 +131,7 @@ pub fn known_until(motion: &Simulation) -> Option<f64> {
 /// As [`simulate`], for the first that cannot begin, with its number.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Model, Settings, Start, simulate_many};
 ///
 /// let start = Start { x: -1.5, velocity: 0.0 };

@@ -5,6 +5,7 @@
 //! threads.
 //!
 //! ```
+//! # use lindstedt_impact as lindstedt;
 //! use lindstedt::impact::{Integrator, Model, Settings, Start, sweep::{Axis, sweep}};
 //!
 //! let axis: Axis = "gamma=1e4:1e6:3:log".parse()?;
@@ -49,6 +50,7 @@ pub struct TooMany {
 /// [`TooMany`], beyond [`MOST_MOTIONS`].
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::sweep::grid_size;
 ///
 /// let axes = ["zeta=0:1:2".parse()?, "mu=5,6,8".parse()?, "gamma=1e4:1e9:1000:log".parse()?];
@@ -77,6 +79,7 @@ pub fn grid_size(axes: &[Axis]) -> Result<usize, TooMany> {
 /// The values of the parameters in the motion of this number, where the last axis varies fastest.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::sweep::grid_values;
 ///
 /// let axes = ["zeta=0:1:2".parse()?, "mu=5:7:3".parse()?];
@@ -157,6 +160,7 @@ impl Summary {
 /// [`SimulationError`] and the number of the first motion that cannot begin.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Integrator, Model, Settings, Start, sweep::{Axis, sweep}};
 ///
 /// let axis: Axis = "zeta=0.01:0.1:4".parse()?;
@@ -213,6 +217,7 @@ fn summaries(
 /// As [`sweep`].
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Case, Integrator, Parameter, Settings, sweep::{sweep, sweep_on}};
 ///
 /// let mut case = Case { zeta: 0.05, ..Case::default() };

@@ -60,6 +60,7 @@ impl Modulus {
     /// Its value, Pa.
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::{Elastic, Modulus};
     ///
     /// let steel = Elastic { modulus: 2.1e11, poisson: 0.3 };

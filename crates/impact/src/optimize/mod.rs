@@ -12,6 +12,7 @@
 //! - `study`: all runs, and what stands beside them.
 //!
 //! ```
+//! # use lindstedt_impact as lindstedt;
 //! use lindstedt::optimize::{Question, Watch, optimize};
 //!
 //! let mut question = Question { runs: 2, ..Question::default() };

@@ -33,6 +33,7 @@ impl Coding {
     /// The point that genes say.
     ///
     /// ```
+    /// # use lindstedt_numeric as lindstedt;
     /// use lindstedt::genetic::{Coding, Space};
     ///
     /// let space = Space::new(vec![[0.0, 3.0]])?;

@@ -27,6 +27,7 @@ impl Default for Crossover {
 /// With both parents in the box and a ratio of 1 or more, R is at least 1.
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::genetic::{Space, heuristic};
 ///
 /// let space = Space::new(vec![[0.0, 1.0], [0.0, 1.0]])?;

@@ -24,6 +24,7 @@
 //! - `rivals`: [`random_search`] and [`differential_evolution`] on the same budget.
 //!
 //! ```
+//! # use lindstedt_numeric as lindstedt;
 //! use lindstedt::genetic::{Evaluation, Options, Space, generator, search};
 //!
 //! let space = Space::new(vec![[-1.0, 2.0], [-1.0, 2.0]])?;
@@ -66,6 +67,7 @@ use rand_chacha::ChaCha8Rng;
 /// in common, so runs may follow each other in any order, on any number of threads.
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use rand::RngExt;
 ///
 /// let first: Vec<u32> = (0..3).map(|stream| lindstedt::genetic::generator(1, stream).random()).collect();

@@ -38,6 +38,7 @@ const MOST_HALVINGS: usize = 8;
 /// D of the generation after this one, the first of number 0.
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::genetic::next_step;
 ///
 /// assert_eq!([next_step(1.0, 0, false), next_step(1.0, 1, false), next_step(0.25, 7, true)], [1.0, 0.25, 1.0]);
@@ -96,6 +97,7 @@ fn directions(count: usize, step: f64, generator: &mut impl Rng) -> Vec<Vec<f64>
 /// Every bit turned over with this probability.
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::genetic::{bit_flips, generator};
 ///
 /// assert_eq!(bit_flips(&[0.0, 1.0], 1.0, &mut generator(1, 0)), [1.0, 0.0]);

@@ -7,6 +7,7 @@ use super::space::Evaluation;
 /// Whether one is no worse in every value and better in one; with constraints, whether it breaks them less.
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::genetic::{Evaluation, dominates};
 ///
 /// let of = |objectives: &[f64]| Evaluation { objectives: objectives.to_vec(), ..Evaluation::default() };

@@ -204,6 +204,7 @@ impl Options {
     /// How many children crossover makes, and how many mutation.
     ///
     /// ```
+    /// # use lindstedt_numeric as lindstedt;
     /// use lindstedt::genetic::Options;
     ///
     /// assert_eq!(Options::default().children(), (78, 20)); // of 100 with an elite of 2

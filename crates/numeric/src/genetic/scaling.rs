@@ -6,6 +6,7 @@
 /// How far apart scores are plays no part, so neither does the unit of what is sought.
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::genetic::rank_scaling;
 ///
 /// let expected = rank_scaling(&[3.0, -1.0, 7.0, f64::INFINITY], 10);

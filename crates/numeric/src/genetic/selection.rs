@@ -9,6 +9,7 @@ use rand::{Rng, RngExt};
 /// Of an individual with the share w of all weights and n parents, n w rounded down or up are chosen, never more or fewer.
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::genetic::{generator, stochastic_uniform};
 ///
 /// let mut parents = stochastic_uniform(&[2.0, 0.0, 1.0], 6, &mut generator(1, 0));

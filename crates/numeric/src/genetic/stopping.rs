@@ -56,6 +56,7 @@ impl Stop {
 /// Whether the best values, that of the random population first, have ceased to change. Where there was none all along they have too.
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::genetic::{StallTest, has_stalled};
 ///
 /// let still = vec![7.0; 60];

@@ -5,7 +5,7 @@
 //!
 //! Any other periodic motion: the Runge-Kutta return to a turning point.
 //!
-//! Only the judge ([`mod@crate::verify`]) may use this file; `tests/library/layers.rs` holds the wall.
+//! Only the judge (`mod@crate::verify`) may use this file; `tests/library/layers.rs` holds the wall.
 
 pub use crate::numeric::ode::energy::{Force, PeriodError, turning_point};
 
@@ -22,6 +22,7 @@ const STEP_TOLERANCE: f64 = 1e-13;
 /// See [`PeriodError`].
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::numeric::period::{Force, conservative_period};
 ///
 /// let period = conservative_period(&Force::smooth(&f64::sin), 0.0, 1.5)?; // a pendulum, rad
@@ -124,6 +125,7 @@ impl Swing {
 /// See [`PeriodError`].
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::numeric::period::swing;
 ///
 /// let swing = swing(&|_t, x, _v| -f64::sin(x), 0.0, 1.5, 20.0)?;
@@ -145,6 +147,7 @@ pub fn swing(
 /// See [`PeriodError`].
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::numeric::period::swing_with_cuts;
 ///
 /// // A ball that rolls down two slopes turns at its corner.

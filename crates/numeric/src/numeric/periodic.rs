@@ -80,6 +80,7 @@ impl PeriodicMotion {
 /// None was found near there, or the motion cannot be followed.
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::numeric::periodic::periodic_motion;
 ///
 /// // x'' + x'/5 + x = cos(2t)

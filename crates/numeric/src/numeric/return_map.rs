@@ -122,6 +122,7 @@ impl LimitCycle {
 /// None within a factor of sixty.
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::numeric::return_map::{Equation, nearest_limit_cycle};
 ///
 /// // Van der Pol with mu = 1: the period of the cycle is 6.6632868593.

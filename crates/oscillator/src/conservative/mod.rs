@@ -34,6 +34,7 @@ use crate::symbol::Symbol;
 /// Quadrature converges fast then, and only then.
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::{expr::Expr, method::is_smooth};
 ///
 /// let [wave, wall]: [Expr; 2] = ["sin(x)".parse()?, "abs(x)".parse()?];

@@ -22,6 +22,7 @@ use crate::symbol::Symbol;
 /// A force that cannot be written out.
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::{expr::Expr, method::is_odd};
 ///
 /// let [odd, neither]: [Expr; 2] = ["x + x^3".parse()?, "x + x^2".parse()?];

@@ -22,6 +22,7 @@ use crate::symbol::{Symbol, fresh};
 /// An antiderivative of a force in `coordinate`; `None` where a term has no closed form here.
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::{method::potential, expr::Expr};
 /// let force: Expr = "sin(x) + eps*x^3".parse().unwrap();
 /// assert_eq!(potential(&force, "x".into()).unwrap().to_string(), "eps*x^4/4 - cos(x)");

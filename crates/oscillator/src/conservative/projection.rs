@@ -28,6 +28,7 @@ const HIGHEST_POWER: usize = 24;
 /// closed form here.
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::{method::cosine_coefficient, expr::Expr};
 /// let force: Expr = "sin(x)".parse().unwrap();
 /// let first = cosine_coefficient(&force, "x".into(), &Expr::symbol("A"), 1).unwrap();

@@ -16,13 +16,14 @@
 //! B_2 = (C[R] + A_1 dA_1/da - a B_1^2)/(2 omega0 a)
 //! ```
 //!
-//! Order 1 is `a cos(psi)` with `A_1` and `B_1`, for every force whose projections have a [closed form](projections); order 2
+//! Order 1 is `a cos(psi)` with `A_1` and `B_1`, for every force whose projections have a closed form; order 2
 //! adds `u_1`, `A_2` and `B_2`, for polynomials in `x` and `x'`. The error of either is one power more of `delta` over times of
 //! `1/delta`. Everything but the linear restoring force is small: the letters whose vanishing leaves that alone, or else all
-//! other terms together. Where nothing linear restores, but one power of the coordinate, the true motion of [that](pure_power) is averaged
+//! other terms together. Where nothing linear restores, but one power of the coordinate, the true motion of that is averaged
 //! along.
 //!
 //! ```
+//! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let oscillator = Oscillator::parse("x'' - mu*(1 - x^2)*x' + x = 0")?;
 //! let options = Options { method: Some(Method::Averaging), order: Some(2), ..Options::default() };

@@ -31,6 +31,7 @@ const SECOND_ORDER: u32 = 2;
 /// and Poincare. Where that one has no expansion to begin with, [`solve`](super::solve) goes on to one that needs none.
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::{Method, Oscillator, method::default_method};
 ///
 /// let driven = Oscillator::parse("x'' + x'/10 + x + x^3 = cos(2*t)")?;

@@ -11,6 +11,7 @@
 //! The next order needs all harmonics of `f_1` along the motion: infinitely many where `f_1` is no polynomial.
 //!
 //! ```
+//! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let oscillator = Oscillator::parse("x'' + x + eps*sin(x) = 0")?;
 //! let options = Options { method: Some(Method::LindstedtPoincare), order: Some(1), ..Options::default() };

@@ -12,6 +12,7 @@
 //! under the integral, which leaves the [shared integral](super::one_term).
 //!
 //! ```
+//! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
 //! let options = Options { method: Some(Method::Hamiltonian), ..Options::default() };

@@ -12,6 +12,7 @@
 //! [`balance`](super::balance::balance).
 //!
 //! ```
+//! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 //! let options = Options { method: Some(Method::HarmonicBalance), order: Some(2), ..Options::default() };

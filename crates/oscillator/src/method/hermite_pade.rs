@@ -23,6 +23,7 @@
 //! ```
 //!
 //! ```
+//! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::{Degrees, Method}};
 //! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 //! let options = Options { method: Some(Method::HermitePade), degrees: Some(Degrees::Quadratic(1, 1, 1)), ..Options::default() };

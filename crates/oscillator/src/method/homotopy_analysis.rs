@@ -13,6 +13,7 @@
 //! With hbar = -1 this is the homotopy in which omega itself, not omega0^2, is expanded. Order 1 is `w_0` alone.
 //!
 //! ```
+//! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 //! let options = Options { method: Some(Method::HomotopyAnalysis), ..Options::default() };

@@ -15,6 +15,7 @@
 //! Inertia that depends on the position stands in `N`, with `x' = omega x_theta`; the relation then is quadratic at order one.
 //!
 //! ```
+//! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let cubic = Oscillator::parse("x'' + x - x^3/6 = 0")?;
 //! let options = Options { method: Some(Method::HomotopyPerturbation), order: Some(1), ..Options::default() };

@@ -12,6 +12,7 @@
 //! ```
 //!
 //! ```
+//! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let oscillator = Oscillator::parse("(1 + x^2)*x'' + x*x'^2 + x = 0")?;
 //! let options = Options { method: Some(Method::Hamiltonian), ..Options::default() };

@@ -16,6 +16,7 @@
 //! `sum_j C_j(A) [cos^p (-sin)^q]_sin = 0`, as [`limit_cycle`](super::limit_cycle) finds it.
 //!
 //! ```
+//! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 //! let options = Options { method: Some(Method::LindstedtPoincare), order: Some(2), ..Options::default() };

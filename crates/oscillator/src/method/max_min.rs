@@ -12,6 +12,7 @@
 //! there are none, as for a force that is steeper than linear at rest, it does not apply.
 //!
 //! ```
+//! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 //! let options = Options { method: Some(Method::MaxMin), ..Options::default() };

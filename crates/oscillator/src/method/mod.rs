@@ -105,6 +105,22 @@ pub struct Options {
     /// The frequency without the motion, to a [higher order](HIGHEST_ORDER_OF_FREQUENCY) in less time.
     pub frequency_alone: bool,
     /// Who may stop a long expansion, which then ends with the orders that there are.
+    ///
+    /// ```
+    /// # use lindstedt_oscillator as lindstedt;
+    /// use lindstedt::{Counter, Interrupt, Options, Oscillator, Progress, Supervision, solve};
+    /// use std::sync::atomic::AtomicBool;
+    ///
+    /// // Stopped before it begins: the orders that need no long work are there.
+    /// static STOP: AtomicBool = AtomicBool::new(true);
+    /// static COUNTER: Counter = Counter::new();
+    /// let supervision = Supervision { interrupt: Interrupt::by(&STOP), progress: Progress::by(&COUNTER) };
+    /// let options = Options { order: Some(300), frequency_alone: true, supervision, ..Options::default() };
+    /// let solution = solve(&Oscillator::parse("x'' - mu*(1 - x^2)*x' + x = 0")?, &options)?;
+    /// assert!((1..300).contains(&solution.order));
+    /// assert!(solution.validity.iter().any(|note| note.to_string().contains("stopped")));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub supervision: Supervision,
 }
 
@@ -601,6 +617,7 @@ impl Refusal {
 /// A [`Refusal`] that names the term in the way.
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::{method::{Options, solve}, Oscillator};
 /// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
 /// let solution = solve(&pendulum, &Options { order: Some(2), ..Options::default() })?;

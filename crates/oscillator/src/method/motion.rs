@@ -22,6 +22,7 @@ use crate::values::Values;
 /// equation.
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::{Options, Oscillator, solve};
 ///
 /// let solution = solve(&Oscillator::parse("x'' + x + eps*x^3 = 0")?, &Options::default())?;

@@ -176,6 +176,7 @@ impl NoNumbers {
 /// [`NoNumbers`], in words for a user.
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::{Options, Oscillator, method::numbers::evaluate, solve};
 ///
 /// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
@@ -236,6 +237,7 @@ pub fn evaluate(
 /// As [`evaluate`].
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::{Options, Oscillator, method::numbers::frequency_squared_of, solve};
 ///
 /// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
@@ -645,6 +647,7 @@ pub fn half_a_period(k: usize, value: f64) -> f64 {
 /// The values of all symbols that the formulas of an answer are written with, of which `found` are the numbers, if it has any.
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::{Oscillator, method::{Options, numbers::{evaluate, symbol_values}, solve}};
 /// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
 /// let solution = solve(&pendulum, &Options { order: Some(2), ..Options::default() })?;

@@ -13,6 +13,7 @@
 //! [modulo many primes](crate::series::hermite_pade::by_primes), from the frequency alone.
 //!
 //! ```
+//! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::{Degrees, Method}};
 //! let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
 //! let options = Options { method: Some(Method::Pade), degrees: Some(Degrees::Quotient(1, 1)), ..Options::default() };

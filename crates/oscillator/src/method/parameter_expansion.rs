@@ -14,6 +14,7 @@
 //! [homotopy perturbation](super::homotopy_perturbation) with the force as a polynomial.
 //!
 //! ```
+//! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let quadratic = Oscillator::parse("x'' + x*abs(x) = 0")?;
 //! let options = Options { method: Some(Method::ParameterExpansion), order: Some(1), ..Options::default() };

@@ -52,6 +52,7 @@ pub(super) fn is_near((p, q): (u32, u32), ratio: f64, method: Method) -> Result<
 /// The drive is far from all of them.
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::{Method, Options, Oscillator, method::with_resonance_at};
 ///
 /// let duffing = Oscillator::parse("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)")?;

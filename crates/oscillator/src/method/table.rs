@@ -273,6 +273,7 @@ impl Entry {
 /// The names of the methods that take a choice, in words: `lindstedt-poincare and pade`.
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::method::table::{Choice, that_take};
 ///
 /// assert_eq!(that_take(Choice::Hbar), "homotopy-analysis");

@@ -5,6 +5,7 @@ use std::fmt;
 /// As many as the approximant has polynomials.
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::solution::Degrees;
 ///
 /// assert_eq!(Degrees::Quotient(2, 1).to_string(), "[2/1]");

@@ -101,6 +101,7 @@ impl Solution {
     /// [left out](Self::steady_motions).
     ///
     /// ```
+    /// # use lindstedt_oscillator as lindstedt;
     /// use lindstedt::{Options, Oscillator, Values, solve};
     ///
     /// let duffing = Oscillator::parse("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)")?;

@@ -390,6 +390,7 @@ impl Factor {
 /// `sum of weight * series`, over one common denominator.
 ///
 /// ```
+/// # use lindstedt_series as lindstedt;
 /// use lindstedt::exact::{Integer, Integers};
 /// use lindstedt::series::{FourierSeries, linear_combination};
 /// let series = |parts: &[i64]| {
@@ -419,6 +420,7 @@ pub fn linear_combination<R: Ring>(ring: &R, terms: &[(i64, &FourierSeries<R>)])
 /// `sum of weight * left * right`, over one common denominator: one order of a running convolution.
 ///
 /// ```
+/// # use lindstedt_series as lindstedt;
 /// use lindstedt::exact::{Integer, Integers};
 /// use lindstedt::series::{FourierSeries, sum_of_products};
 /// let parts = vec![Integer::from(0), Integer::from(1)];

@@ -444,6 +444,7 @@ impl Recurrences {
 /// where it is not analytic there, contains another symbol, or a coefficient is out of range.
 ///
 /// ```
+/// # use lindstedt_series as lindstedt;
 /// use lindstedt::{expr::parse_expression, series::numeric_taylor};
 /// let root = parse_expression("sqrt(x)").unwrap();
 /// // sqrt(4 + 8 s) = 2 + 2 s - s^2 + ...

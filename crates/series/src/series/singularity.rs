@@ -62,6 +62,7 @@ pub const FEWEST: usize = 16;
 /// them, too irregular, or several singularities that are equally far away.
 ///
 /// ```
+/// # use lindstedt_series as lindstedt;
 /// use lindstedt::exact::ratio;
 /// use lindstedt::series::singularity::nearest;
 ///
@@ -160,6 +161,7 @@ fn logarithm(value: &Rational) -> Option<f64> {
 /// The last power of a series that ends, with as many coefficients that vanish behind it as there are up to it; `None` of all others.
 ///
 /// ```
+/// # use lindstedt_series as lindstedt;
 /// use lindstedt::{exact::ratio, series::singularity::last_power};
 ///
 /// let mut coefficients = vec![ratio(0, 1); 40];

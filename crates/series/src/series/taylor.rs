@@ -68,6 +68,7 @@ fn in_words(point: &[(Symbol, Expr)]) -> String {
 /// A term that is not analytic at the point, a degree above the limit, or a coefficient that does not exist.
 ///
 /// ```
+/// # use lindstedt_series as lindstedt;
 /// use lindstedt::{expr::parse_expression, series::taylor};
 /// let force = parse_expression("sin(x)").unwrap();
 /// let parts = taylor(&force, &[("x".into(), num_traits::Zero::zero())], 5).unwrap();

@@ -165,6 +165,7 @@ pub fn certify(
 /// [`NotCertified`].
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::certificate::{certify_motion, check};
 /// use lindstedt::{Options, Oscillator, solve};
 ///

@@ -143,6 +143,7 @@ pub enum CheckError {
 /// [`CheckError`].
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::certificate::{certify, check};
 /// use lindstedt::exact::Integer;
 /// use lindstedt::{Options, Oscillator, solve};

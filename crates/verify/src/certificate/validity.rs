@@ -76,6 +76,7 @@ const HEAVIEST: i32 = 4;
 /// No proof at the first amplitude, or a law that is none of the amplitude in closed form.
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::certificate::validity;
 /// use lindstedt::exact::ratio;
 /// use lindstedt::{Options, Oscillator, Supervision, solve};

@@ -289,6 +289,7 @@ struct Hill {
 /// [`HillError`].
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::Oscillator;
 /// use lindstedt::hill::{Options, transition_curves};
 ///

@@ -94,6 +94,7 @@ pub enum TruthError {
 /// [`TruthError`].
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::Oscillator;
 /// use lindstedt::hill::{Options, judge, transition_curves};
 ///

@@ -262,6 +262,7 @@ const MOST_BRANCHES: usize = 12;
 /// [`ResponseError`].
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::response::{Question, respond};
 ///
 /// // Duffing's equation, hardening: a jump down on the way up.

@@ -87,6 +87,7 @@ impl Response {
     /// The same with the steady motions of these slow equations beside it.
     ///
     /// ```
+    /// # use lindstedt_verify as lindstedt;
     /// use lindstedt::response::{Question, respond};
     /// use lindstedt::{Method, Options, solve};
     ///

@@ -82,6 +82,7 @@ impl Trajectory {
     /// The states on the section of the course from its time `after` on, in order; none without a section.
     ///
     /// ```
+    /// # use lindstedt_verify as lindstedt;
     /// use lindstedt::Oscillator;
     /// use lindstedt::expr::parse_expression;
     /// use lindstedt::trajectory::{Course, Section};
@@ -101,6 +102,7 @@ impl Trajectory {
     /// there and does not cross it, so that there is no crossing.
     ///
     /// ```
+    /// # use lindstedt_verify as lindstedt;
     /// use lindstedt::Oscillator;
     /// use lindstedt::expr::parse_expression;
     /// use lindstedt::trajectory::{Course, Section};

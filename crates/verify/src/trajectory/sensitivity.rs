@@ -29,6 +29,7 @@ impl Trajectory {
     /// [`DISPLACEMENT`] of it leads elsewhere. `None` where they are known to the end. Costs as much as the motion.
     ///
     /// ```
+    /// # use lindstedt_verify as lindstedt;
     /// use lindstedt::Oscillator;
     /// use lindstedt::trajectory::Course;
     ///

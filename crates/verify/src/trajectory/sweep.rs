@@ -34,6 +34,7 @@ pub struct SweptMotion {
 /// The number, counted from zero, of the first motion that cannot begin, and why.
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::Oscillator;
 /// use lindstedt::trajectory::{Course, sweep};
 ///

@@ -144,6 +144,7 @@ fn variants(oscillator: &Oscillator, small: Option<&str>) -> Vec<Options> {
 /// No method applies; values are missing or unknown; no periodic motion there.
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::{Method, Oscillator, verify::comparison::compare};
 ///
 /// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
@@ -439,6 +440,7 @@ pub struct Backbone {
 /// omega against the amplitude: the truth, and every method of the table; methods with one and the same curve together.
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::{Oscillator, verify::comparison::{backbones, compare}};
 ///
 /// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;

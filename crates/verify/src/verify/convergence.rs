@@ -54,6 +54,7 @@ const AGREEMENT: f64 = 0.01;
 /// has too few, or symbols that do not enter in step with the order, or none that show a law.
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::{Options, Oscillator, exact::ratio, solve, verify::converges};
 ///
 /// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
@@ -75,6 +76,7 @@ pub fn converges(solution: &Solution) -> Option<Convergence> {
 /// than the powers of any number; `None` where they say neither.
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::{Options, Oscillator, solve, verify::{converges, converges_everywhere}};
 ///
 /// // omega^2 = 1 - (1 - exp(-A))^2
@@ -371,6 +373,7 @@ fn with_numbers(oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>, but: S
 /// The nearest singularity of a power series, from its coefficients; `None` where they show no regular pattern.
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// let geometric: Vec<f64> = (0..30).map(|n| 0.5_f64.powi(n)).collect(); // 1/(1 - x/2)
 /// let pole = lindstedt::verify::nearest_singularity(&geometric).expect("a pole");
 /// assert!((pole.radius - 2.0).abs() < 1e-6 && pole.angle.abs() < 1e-6);

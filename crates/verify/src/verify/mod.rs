@@ -265,6 +265,7 @@ fn letters_of(known: &[Symbol]) -> String {
 /// The symbols that need a value before `solution` can be judged.
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::{Options, Oscillator, solve};
 ///
 /// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
@@ -300,6 +301,7 @@ pub fn needed_values(solution: &Solution) -> Vec<Symbol> {
 /// Missing or unknown values, or no true periodic motion there.
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::{Options, Oscillator, Verdict, judge, solve};
 ///
 /// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
@@ -636,6 +638,7 @@ pub struct Motions {
 /// As for [`judge`].
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::{Options, Oscillator, solve, verify::motions};
 ///
 /// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
@@ -694,6 +697,7 @@ pub fn motions(
 /// As for [`judge`].
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::{Options, Oscillator, solve, verify::true_motion};
 ///
 /// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;

@@ -9,6 +9,12 @@ use super::{Arithmetic, Lanes, Moduli, WIDTH};
 #[derive(Clone, Copy, Debug)]
 pub struct Portable(Arch);
 
+impl Default for Portable {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Portable {
     /// With the vector instructions that are there at run time.
     pub fn new() -> Self {

@@ -74,6 +74,7 @@ pub const MOST_DAMPING: f64 = 0.5;
 /// [`ChainError`]: a pivot that moves, friction by the arctangent, a pendulum that turns over, heavy damping, a start in a barrier.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Integrator, Model, Settings, Start, chain, simulate};
 ///
 /// let model = Model { zeta: 0.02, gamma: 1e6, mu: 1e5, ..Model::default() };

@@ -19,6 +19,7 @@
 //! 1e-6 of its depth.
 //!
 //! ```
+//! # use lindstedt_impact as lindstedt;
 //! use lindstedt::impact::contact::ExactContact;
 //!
 //! // The paper's pendulum on a soft barrier: gravity is half of what turns it.
@@ -254,6 +255,7 @@ impl SineSeries {
     /// in [`SineSeries::deviation`].
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::contact::{HuntCrossley, SineSeries};
     ///
     /// let contact = HuntCrossley::new(1.5, 1e6, 0.3, 1.0)?;
@@ -328,6 +330,7 @@ impl SineSeries {
     /// The formula as people write it, so many significant digits: s is the time since touch.
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::contact::ExactContact;
     ///
     /// let spring = ExactContact::new(|d| 4.0 * d, 1.0)?;

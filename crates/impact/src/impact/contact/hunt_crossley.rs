@@ -73,6 +73,7 @@ impl HuntCrossley {
     /// [`ContactError`]: a quantity outside its domain, a depth, duration or force beyond double precision.
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::contact::HuntCrossley;
     ///
     /// // A Hertz contact with lambda v = 0.3.
@@ -189,6 +190,7 @@ impl HuntCrossley {
     /// Velocity and force, per unit of mass, at a depth on the way in; beyond the greatest depth those of it.
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::contact::HuntCrossley;
     ///
     /// let contact = HuntCrossley::new(1.5, 1e6, 0.3, 1.0)?;
@@ -232,6 +234,7 @@ impl HuntCrossley {
 /// [`ContactError::Negative`] for a product that is no number or negative.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::contact::hunt_crossley::restitution;
 ///
 /// assert!((restitution(1.0)? - 0.593_624_260).abs() < 1e-9);
@@ -248,6 +251,7 @@ pub fn restitution(damping_times_speed: f64) -> Result<f64, ContactError> {
 /// [`ContactError::Restitution`] for one that is not above 0 and at most 1.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::contact::hunt_crossley::{damping_for, restitution};
 ///
 /// let wanted = 0.7;
@@ -377,6 +381,7 @@ fn remaining(y: f64, m: f64) -> f64 {
 /// outside their domains.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::contact::{HuntCrossley, hunt_crossley::peak_force};
 ///
 /// let contact = HuntCrossley::new(1.5, 1e6, 0.3, 1.0)?;

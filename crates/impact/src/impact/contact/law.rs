@@ -160,6 +160,7 @@ impl Touch<'_> {
     /// [`ContactError`]: a quantity outside its domain, a force that does not turn the motion back, a law that does not apply.
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::contact::{ContactLaw, Touch};
     ///
     /// let touch = Touch { stiffness: 1e6, speed: 1.0, ..Touch::default() };
@@ -285,6 +286,7 @@ impl ContactMotion {
     /// The same motion as a parabola and sines within `tolerance` of D, as far as 64 of them do: elementary functions, whatever the law.
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::contact::{ContactLaw, Touch};
     ///
     /// let contact = Touch::default().by(ContactLaw::PowerLaw)?;
@@ -315,6 +317,7 @@ impl ContactMotion {
     /// the regularised incomplete beta function, for the way in.
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::contact::{ContactLaw, Touch};
     ///
     /// let touch = Touch { stiffness: 1e6, speed: 1.0, ..Touch::default() };
@@ -393,6 +396,7 @@ pub struct ContactRow {
 /// [`ContactError`] where there is no exact contact to compare with.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::contact::{ContactLaw, Touch, comparison};
 ///
 /// for row in comparison(&Touch::default())? {

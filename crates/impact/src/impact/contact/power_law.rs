@@ -73,6 +73,7 @@ impl PowerLaw {
     /// [`ContactError`]: a quantity that is no positive number, a depth or a duration beyond double precision.
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::contact::PowerLaw;
     ///
     /// let hertz = PowerLaw::new(1.5, 1e6, 1.0)?;
@@ -129,6 +130,7 @@ impl PowerLaw {
     /// [`ContactError`] for numbers that are none and for an order that there is not.
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::contact::PowerLaw;
     ///
     /// // Gravity at the paper's barrier: sin 0.323 and cos 0.323.
@@ -278,6 +280,7 @@ fn greatest_depth(exponent: f64, stiffness: f64, speed: f64) -> f64 {
 /// n, where this force is d^n but for a factor, as far as doubles tell at depths from 1e-9 to 4; else nothing.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::contact::power_law::exponent_of;
 ///
 /// assert_eq!(exponent_of(|d| 3e6 * d * d), Some(2.0));

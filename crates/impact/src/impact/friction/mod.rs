@@ -97,6 +97,7 @@ pub struct FrictionStudy {
 /// [`FrictionError`] names the number that makes no swing.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::friction::{FrictionSetup, study};
 ///
 /// let study = study(FrictionSetup::default())?;

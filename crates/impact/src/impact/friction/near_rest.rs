@@ -112,6 +112,7 @@ pub struct NearRest {
 /// The rate at which the arctangent's motion dies near rest, from its linear damping c: the slow one of two, or that of both.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::friction::slow_rate;
 ///
 /// assert_eq!(slow_rate(2.5), 0.5); // (s + 2)(s + 1/2)
@@ -128,6 +129,7 @@ pub fn slow_rate(damping: f64) -> f64 {
 /// The work that equation (6) takes of a harmonic swing of this greatest speed, over that of Coulomb's law.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::friction::work_share;
 ///
 /// assert!((work_share(0.01) - (2.0_f64.sqrt() - 1.0)).abs() < 1e-15);

@@ -119,6 +119,7 @@ fn value_of(name: &str) -> f64 {
 /// The approximation of sgn by equation (6), with this value of pi.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::friction::arctangent;
 ///
 /// assert!((arctangent(1.0, std::f64::consts::PI) - 0.993634).abs() < 1e-6);

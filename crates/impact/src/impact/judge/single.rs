@@ -109,6 +109,7 @@ fn way_forward(reason: &StopReason) -> String {
 /// [`TrueImpactError`]: the barrier is not reached, or the run ends early and says why.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Collision, hertz::elastic_force, true_impact};
 /// use lindstedt::numeric::ode::Options;
 ///
@@ -327,6 +328,7 @@ const TIGHTEST: f64 = 1e-14;
 /// As [`true_impact`], and [`TrueImpactError::NotSettled`] where double precision does not know six digits.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Collision, assured_impact, hertz::elastic_force};
 /// use lindstedt::numeric::ode::Options;
 ///
@@ -416,6 +418,7 @@ impl TrueImpact {
 /// The deviation of the closed form from the true motion.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Reading, Setup, deviation, solve};
 ///
 /// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;

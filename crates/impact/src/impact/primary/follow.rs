@@ -27,6 +27,7 @@ use crate::system::{End, Event, Options, Path};
 /// [`PrimaryError`]; a motion that ends early says so by [`PrimaryMotion::stop`].
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::Model;
 /// use lindstedt::impact::primary::{Primary, PrimaryCase, PrimarySettings, simulate_primary};
 ///

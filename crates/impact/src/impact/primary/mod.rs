@@ -255,6 +255,7 @@ impl PrimaryMotion {
     /// Both states at a time; nothing outside of the motion.
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::Model;
     /// use lindstedt::impact::primary::{Primary, PrimaryCase, PrimarySettings, simulate_primary};
     ///

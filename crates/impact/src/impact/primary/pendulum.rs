@@ -18,6 +18,7 @@ impl PrimaryMotion {
     /// The reason for which there is no such time.
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::Model;
     /// use lindstedt::impact::primary::{Primary, PrimaryCase, PrimarySettings, simulate_primary};
     ///

@@ -48,6 +48,7 @@ impl PrimaryRow {
 /// The number, counted from zero, of the first motion that cannot be followed, and why.
 ///
 /// ```
+/// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::Model;
 /// use lindstedt::impact::primary::{Primary, PrimaryCase, PrimarySettings, sweep_primary};
 ///

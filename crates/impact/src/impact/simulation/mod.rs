@@ -392,6 +392,7 @@ impl Simulation {
     /// where that of a chain is only near the motion, and where the contact did not end or is too short for the clock.
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::{Integrator, Model, Settings, Start, simulate};
     ///
     /// let model = Model { gamma: 1e4, ..Model::default() };

@@ -124,6 +124,7 @@ impl Axis {
     /// As [`Axis::linear`]; ends that are zero, or of different signs.
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::sweep::Axis;
     ///
     /// assert_eq!(Axis::logarithmic("gamma", 1e4, 1e6, 3)?.values(), [1e4, 1e5, 1e6]);
@@ -165,6 +166,7 @@ impl Axis {
     /// [`AxisError`], for values that are not finite or come twice, and for fewer than two or more than [`MOST_MOTIONS`].
     ///
     /// ```
+    /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::sweep::{Axis, Spacing};
     ///
     /// let axis: Axis = "zeta=0.01,0.02,0.05".parse()?;

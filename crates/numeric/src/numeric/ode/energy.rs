@@ -499,6 +499,7 @@ fn size(function: &dyn Fn(f64) -> f64, from: f64, to: f64) -> f64 {
 /// See [`PeriodError`].
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::numeric::period::{Force, turning_point};
 ///
 /// let end = turning_point(&Force::smooth(&|x| x + 0.5 * x * x), 0.0, 0.5)?;

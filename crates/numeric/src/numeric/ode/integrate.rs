@@ -152,6 +152,7 @@ pub enum IntegrationError {
 /// [`Trajectory::stop_reason`].
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::numeric::ode::{Options, State, integrate};
 ///
 /// let path = integrate(|_t, x, _v| -x, State { t: 0.0, x: 1.0, v: 0.0 }, 3.0, &[], &Options::default())?;
@@ -176,6 +177,7 @@ pub fn integrate<'a>(
 /// there.
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::numeric::ode::{Event, Options, Phase, State, integrate_phases};
 ///
 /// // Free fall from a height of 1 until a spring of stiffness 100 is met at x = 0.
@@ -206,6 +208,7 @@ pub fn integrate_phases(
 /// Any first-order equations: `rates` writes y' at the time and the values y that it is given. Otherwise as [`integrate`].
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::numeric::ode::{Action, Event, Options, Point, integrate_first_order};
 ///
 /// // Euler's equations of a body that turns freely: energy and angular momentum are kept.

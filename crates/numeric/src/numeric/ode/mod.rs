@@ -14,6 +14,7 @@
 //! - [`quadrature`] integrates a smooth function, [`root`] finds roots and minima.
 //!
 //! ```
+//! # use lindstedt_numeric as lindstedt;
 //! use lindstedt::numeric::ode::{Event, Options, State, integrate};
 //!
 //! // The pendulum from 1.5 rad at rest: its first passage through the vertical is a quarter of its period.

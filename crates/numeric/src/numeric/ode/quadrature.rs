@@ -10,6 +10,7 @@
 //! `dx / sqrt(2 (V(A) - V(x)))` smooth.
 //!
 //! ```
+//! # use lindstedt_numeric as lindstedt;
 //! use lindstedt::numeric::ode::quadrature::integrate_smooth;
 //! let (area, _) = integrate_smooth(f64::sin, 0.0, std::f64::consts::PI, 1e-13)?;
 //! assert!((area - 2.0).abs() < 1e-14);
@@ -93,6 +94,7 @@ pub fn integrate_smooth(
 /// As [`integrate_smooth`], with a panel more for every further piece.
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::numeric::ode::quadrature::integrate_piecewise;
 /// let (area, _) = integrate_piecewise(f64::abs, &[-1.0, 0.0, 2.0], 1e-13)?;
 /// assert!((area - 2.5).abs() < 1e-14);
@@ -189,6 +191,7 @@ pub(crate) fn integrate_within(
 /// themselves, such as a least-squares fit.
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::numeric::ode::quadrature::nodes_and_weights;
 /// let integral: f64 = nodes_and_weights(0.0, 2.0).map(|(x, weight)| weight * x.powi(3)).sum();
 /// assert!((integral - 4.0).abs() < 1e-14);

@@ -8,6 +8,7 @@
 //! phi)^2 < 1 - xi`. It never leaves the bracket and never needs more than a few times the steps of bisection.
 //!
 //! ```
+//! # use lindstedt_numeric as lindstedt;
 //! use lindstedt::numeric::ode::root::find_root;
 //! let cosine = find_root(|x| x.cos() - x, 0.0, 1.0)?;
 //! assert!((cosine.cos() - cosine).abs() < 1e-15);
@@ -108,6 +109,7 @@ pub fn find_root(mut function: impl FnMut(f64) -> f64, a: f64, b: f64) -> Result
 /// the value; the point is good to about the square root of the rounding error, the value to the rounding error.
 ///
 /// ```
+/// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::numeric::ode::root::find_minimum;
 ///
 /// let (place, least) = find_minimum(|x| (x - 2.0).powi(2) + 1.0, 0.0, 5.0);

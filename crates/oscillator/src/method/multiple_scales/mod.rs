@@ -8,7 +8,7 @@
 //! a' = sum eps^k f_k(a),   theta' = omega0 + sum eps^k g_k(a),   f_k + i a g_k = 2 e^(-i beta) D_k B,  B = (a/2) e^(i beta)
 //! ```
 //!
-//! What the slow derivatives `D_k B` are is for [`slow_times`]. The motion leaves out homogeneous solutions, so `a` is the
+//! What the slow derivatives `D_k B` are is for `slow_times`. The motion leaves out homogeneous solutions, so `a` is the
 //! amplitude of the first harmonic to every order. A free conservative motion keeps its amplitude, and `theta'` is its
 //! frequency; a self-excited one ends where `f = 0`, on a limit cycle.
 //!
@@ -16,6 +16,7 @@
 //! amplitude a linear damping counts as its square, so that it appears beside the first effect of a cubic force.
 //!
 //! ```
+//! # use lindstedt_oscillator as lindstedt;
 //! use lindstedt::{Oscillator, method::{Options, solve}, solution::Method};
 //! let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 //! let options = Options { method: Some(Method::MultipleScales), order: Some(2), ..Options::default() };

@@ -1,6 +1,6 @@
 //! What counts as small, and in which power: the force as terms of an expansion.
 //!
-//! In: an equation and the small parameter asked for. Out: a [`Scaling`]. A parameter whose vanishing leaves the linear
+//! In: an equation and the small parameter asked for. Out: a `Scaling`. A parameter whose vanishing leaves the linear
 //! oscillator marks the orders; several that have to vanish together count as equally small; otherwise the amplitude marks
 //! them, a linear damping by the power at which the nonlinear terms change the frequency first: its square for quadratic and cubic terms,
 //! its fourth power for `x^5` alone.

@@ -179,6 +179,7 @@ pub fn bounded(terms: impl Iterator<Item = (usize, u32)>, highest: usize) -> Res
 /// See [`SecularError`].
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::exact::Doubles;
 /// use lindstedt::method::secular::{Amplitude, Detuning, ForceTerm, Scheme, expand};
 /// use lindstedt::{series::FourierSeries, solution::AmplitudeConvention};
@@ -210,6 +211,7 @@ pub fn expand<R: Ring>(
 /// See [`SecularError`].
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::exact::{Integers, Integer};
 /// use lindstedt::method::secular::{Amplitude, Detuning, Extent, ForceTerm, Scheme, expand_numbers};
 /// use lindstedt::{series::FourierSeries, solution::AmplitudeConvention};
@@ -284,6 +286,7 @@ pub(crate) fn expand_numbers_supervised(
 /// See [`SecularError`].
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::exact::{Integers, Polynomial, Polynomials};
 /// use lindstedt::method::secular::{Amplitude, Detuning, Extent, ForceTerm, Scheme, expand_polynomials};
 /// use lindstedt::{Symbol, series::FourierSeries, solution::AmplitudeConvention};
@@ -384,6 +387,7 @@ impl Expansion<Integers> {
 /// See [`SecularError`].
 ///
 /// ```
+/// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::exact::Doubles;
 /// use lindstedt::method::secular::{Amplitude, Detuning, ForceTerm, Scheme, expand_from_root};
 /// use lindstedt::{series::FourierSeries, solution::AmplitudeConvention};

@@ -110,6 +110,7 @@ fn certified_cycle(
 /// [`NotCertified`].
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::certificate::{certify_driven, check_damped};
 /// use lindstedt::{Oscillator, Options, solve};
 ///

@@ -76,6 +76,7 @@ pub struct DampedCertificate {
 /// [`CheckError`].
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::certificate::{certify_cycle, check_damped};
 /// use lindstedt::{Options, Oscillator, solve};
 ///

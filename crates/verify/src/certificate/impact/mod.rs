@@ -77,6 +77,7 @@ pub enum NotEnclosed {
 /// Encloses the impact of a pendulum that is released from rest at `-amplitude` towards a barrier at `barrier`, on its right.
 ///
 /// ```
+/// # use lindstedt_verify as lindstedt;
 /// use lindstedt::certificate::enclose_impact;
 /// use lindstedt::exact::Rational;
 ///

@@ -778,6 +778,42 @@ fn more_frictions_at_rest_than_velocities() {
     );
 }
 
+/// Three balls in a row that touch each other to rounding: 3/10 + 4/10 is 7/10 for people, and more than that by one digit for a sum of doubles.
+/// They stay where they are, in a few steps; with the first one pressed into the second the third is pushed away as if it touched exactly.
+#[test]
+fn balls_that_touch_to_rounding_cost_no_steps() {
+    let row = |start: [f64; 3], until: f64| {
+        let contacts = "50*max(0, 3/10 - (y - x))^2 + 50*max(0, 3/10 - (z - y))^2";
+        let mechanism = Mechanism::parse(&["x", "y", "z"], "(x'^2 + y'^2 + z'^2)/2", contacts).expect("a mechanism");
+        let equations = mechanism.equations().expect("equations");
+        let mut course = Course::of_mechanism(&mechanism, &equations).expect("a course");
+        for (name, value) in ["x", "y", "z"].into_iter().zip(start) {
+            course.begin(Symbol::new(name), value).expect("a state");
+        }
+        course.duration = until;
+        course.step_limit = 500;
+        let motion = course.follow().expect("a motion");
+        assert!(motion.is_complete(), "{:?} at {}", motion.reason(), motion.end());
+        motion.at(until).expect("a state")
+    };
+    let still = row([0.1, 0.4, 0.7], 2.0);
+    assert!(
+        still
+            .iter()
+            .zip([0.1, 0.4, 0.7])
+            .all(|(now, then)| (now - then).abs() < 1e-14),
+        "{still:?}"
+    );
+    // All three in contact: u'' = -100 (2 u - w), w'' = -100 (2 w - u) of both depths, modes 10 and 10 sqrt(3).
+    let pressed = row([0.1, 0.2, 0.5], 0.05);
+    let [u, w] = [pressed[0] - pressed[1] + 0.3, pressed[1] - pressed[2] + 0.3];
+    let [slow, fast] = [10.0_f64, 300.0_f64.sqrt()].map(|rate| 0.1 * (rate * 0.05).cos());
+    assert!(
+        (u - (slow + fast)).abs() < 1e-12 && (w - (slow - fast)).abs() < 1e-12,
+        "{u} {w} {slow} {fast}"
+    );
+}
+
 /// Kept by hand: a root is opened by its own gate alone, an energy may have steps that vanish where they begin, masses of either sign
 /// have a mass matrix, and rigid motions are no growth.
 #[test]

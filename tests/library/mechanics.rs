@@ -703,6 +703,10 @@ fn stick_and_slip_of_several_coordinates_is_that_of_time_stepping() {
         ([1.5, 1.0], [0.2, 0.0, 0.3], 0.0, 1.4, 0.9),
         ([1.0, 1.0], [0.5, 0.0, 0.0], 0.4, 0.3, 1.7),
         ([1.0, 0.7], [0.5, 0.1, 0.0], -0.2, 0.6, 0.45),
+        // Three frictions may be at rest at once, of two velocities.
+        ([1.0, 1.0], [0.2, 0.3, 0.25], 0.0, 1.4, 0.9),
+        ([1.5, 0.8], [0.1, 0.2, 0.3], 0.0, 0.9, 0.6),
+        ([0.7, 1.2], [0.3, 0.05, 0.15], 0.0, 0.8, 1.2),
     ] {
         let kinetic = format!("{}*x'^2/2 + {}*y'^2/2", mass[0], mass[1]);
         // A friction of zero is none, and holds nothing.
@@ -739,6 +743,75 @@ fn stick_and_slip_of_several_coordinates_is_that_of_time_stepping() {
         assert!(motion.difference(&other) < 1e-7, "{mass:?} {bounds:?} {belt}");
     }
     assert!(held > 8, "{held}");
+}
+
+/// Two bodies on the floor and on each other, one of them pushed by t/10, in closed form: both slip together where the push exceeds what
+/// holds both, 1 + 1/10, and apart where (t - 11)/20, the rate of both, needs more than 1/2 between them.
+#[test]
+fn more_frictions_at_rest_than_velocities() {
+    let dissipation = "abs(x') + abs(y')/10 + abs(x' - y')/2";
+    let bodies = ["x'^2/2 + y'^2/2", "0", dissipation];
+    let motion = followed(mechanism(bodies, &[("x", "t/10")], &[], 25.0));
+    let held: Vec<[f64; 2]> = motion.held().collect();
+    assert!(
+        matches!(held.as_slice(), [[0.0, apart]] if (apart - 19.0).abs() < 1e-6),
+        "{held:?}"
+    );
+    for index in 0..=190 {
+        let t = 0.1 * f64::from(index);
+        let place = (t - 11.0).max(0.0).powi(3) / 120.0;
+        let state = motion.at(t).expect("a state");
+        assert!(
+            (state[0] - place).abs() < 1e-9 && (state[1] - place).abs() < 1e-9,
+            "{t}: {state:?} {place}"
+        );
+    }
+    // From there on y'' = 2/5 and x'' = t/10 - 3/2.
+    let [x, y] = [0, 1].map(|place| motion.at(25.0).expect("a state")[place]);
+    let (at, speed) = (8.0_f64.powi(3) / 120.0, 64.0 / 40.0);
+    let own = |t: f64| t * t * t / 60.0 - 3.0 * t * t / 4.0;
+    let from = 19.0 * 19.0 / 20.0 - 1.5 * 19.0;
+    assert!((y - (at + 6.0 * speed + 0.2 * 36.0)).abs() < 1e-6, "{y}");
+    assert!(
+        (x - (at + 6.0 * (speed - from) + own(25.0) - own(19.0))).abs() < 1e-6,
+        "{x}"
+    );
+}
+
+/// Three balls in a row that touch each other to rounding: 3/10 + 4/10 is 7/10 for people, and more than that by one digit for a sum of doubles.
+/// They stay where they are, in a few steps; with the first one pressed into the second the third is pushed away as if it touched exactly.
+#[test]
+fn balls_that_touch_to_rounding_cost_no_steps() {
+    let row = |start: [f64; 3], until: f64| {
+        let contacts = "50*max(0, 3/10 - (y - x))^2 + 50*max(0, 3/10 - (z - y))^2";
+        let mechanism = Mechanism::parse(&["x", "y", "z"], "(x'^2 + y'^2 + z'^2)/2", contacts).expect("a mechanism");
+        let equations = mechanism.equations().expect("equations");
+        let mut course = Course::of_mechanism(&mechanism, &equations).expect("a course");
+        for (name, value) in ["x", "y", "z"].into_iter().zip(start) {
+            course.begin(Symbol::new(name), value).expect("a state");
+        }
+        course.duration = until;
+        course.step_limit = 500;
+        let motion = course.follow().expect("a motion");
+        assert!(motion.is_complete(), "{:?} at {}", motion.reason(), motion.end());
+        motion.at(until).expect("a state")
+    };
+    let still = row([0.1, 0.4, 0.7], 2.0);
+    assert!(
+        still
+            .iter()
+            .zip([0.1, 0.4, 0.7])
+            .all(|(now, then)| (now - then).abs() < 1e-14),
+        "{still:?}"
+    );
+    // All three in contact: u'' = -100 (2 u - w), w'' = -100 (2 w - u) of both depths, modes 10 and 10 sqrt(3).
+    let pressed = row([0.1, 0.2, 0.5], 0.05);
+    let [u, w] = [pressed[0] - pressed[1] + 0.3, pressed[1] - pressed[2] + 0.3];
+    let [slow, fast] = [10.0_f64, 300.0_f64.sqrt()].map(|rate| 0.1 * (rate * 0.05).cos());
+    assert!(
+        (u - (slow + fast)).abs() < 1e-12 && (w - (slow - fast)).abs() < 1e-12,
+        "{u} {w} {slow} {fast}"
+    );
 }
 
 /// Kept by hand: a root is opened by its own gate alone, an energy may have steps that vanish where they begin, masses of either sign

@@ -16,6 +16,7 @@ mod pulse;
 mod root;
 mod section;
 mod sensitivity;
+mod surplus;
 mod sweep;
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -21,10 +21,14 @@ pub fn optimization_sentences(study: &Study) -> Vec<String> {
     let mut sentences = Vec::new();
     if !study.complete {
         let (done, all) = (study.runs.len(), study.question.runs);
-        let cut_short = study.runs.iter().any(|run| run.stop == Stop::Interrupted);
-        sentences.push(match done < all || cut_short {
+        let cut_short = study.runs.iter().filter(|run| run.stop == Stop::Interrupted).count();
+        let of_these = match cut_short {
+            0 => String::new(),
+            number => format!(", {number} of them cut short"),
+        };
+        sentences.push(match done < all || cut_short > 0 {
             true => format!(
-                "Stopped before the end: {done} of {all} runs are in this result, and what was left is missing."
+                "Stopped before the end: {done} of {all} runs are in this result{of_these}, and what was left is missing."
             ),
             false => format!(
                 "Stopped before the end: all {all} runs are in this result, the comparison with other searches is missing."

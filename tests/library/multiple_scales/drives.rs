@@ -125,6 +125,30 @@ fn a_base_that_moves_is_left_out_of_the_force() {
     }
 }
 
+/// Seen from one of two bases the other moves, and the first again as seen from that: there is an end to it.
+#[test]
+fn bases_that_move_differently_are_refused() {
+    for equation in [
+        "x'' + x + eps*abs(x - t)*abs(x + t) = 0",
+        "x'' + x + eps*sqrt(x - t)*sqrt(x + t) = 0",
+        "x'' + x + eps*sin(x - t^2)*sin(x + t) = 0",
+        "x'' + x + eps*abs(x' - cos(t))*abs(x' - cos(2*t))*abs(x - sin(3*t)) = 0",
+        "x'' + x + eps*sqrt(x - cos(t))*sqrt(x - cos(V*t))*sqrt(x - t) = 0",
+    ] {
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        for method in Method::ALL {
+            let options = Options {
+                method: Some(method),
+                ..Options::default()
+            };
+            let refusal = solve(&oscillator, &options).expect_err(equation);
+            assert!(refusal.term().is_some(), "{equation}: {refusal}");
+        }
+        let default = solve(&oscillator, &Options::default()).expect_err(equation);
+        assert!(default.term().is_some(), "{equation}: {default}");
+    }
+}
+
 /// Beside a fifth power damping, detuning and drive count as the fourth power of the amplitude: there are steady motions, and their error
 /// vanishes as the next power does.
 #[test]

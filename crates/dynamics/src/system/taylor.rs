@@ -208,7 +208,7 @@ impl Run<'_> {
         let defined = defined(&mut self.expansion, self.system, now, &self.values, self.events.len());
         let last = self.last.take();
         if let Some(last) = last {
-            if self.halvings < MOST_HALVINGS && (defined.is_err() || self.has_missed_something(&last)) {
+            if self.halvings < MOST_HALVINGS && (defined.is_err() || self.has_missed_something(&last, now)) {
                 self.take_back(last);
                 return Ok(None);
             }
@@ -321,23 +321,49 @@ impl Run<'_> {
 
     /// Whether the rates where a step has come to are others than its series says: a wall, say, that could not be seen from its
     /// beginning.
-    fn has_missed_something(&self, last: &Last) -> bool {
+    fn has_missed_something(&mut self, last: &Last, now: f64) -> bool {
         /// Of the size of a state on the step: what its rate there may be off, times the step.
         const ASTRAY: f64 = 1e-8;
         // The terms that are left out are within the tolerance, their slopes within as many times it as the next order says.
         let astray = ASTRAY.max((self.expansion.order + 1) as f64 * self.options.tolerance);
         let Some(step) = self.steps.last() else { return false };
-        let differs = |(state, series): (usize, &[f64])| {
-            let rate = self.expansion.state(state).get(1).copied().unwrap_or(0.0);
+        let apart = |(state, series): (usize, &[f64])| {
+            let rate = self.expansion.rate(state);
             let (mut power, mut size, mut change) = (1.0, series[0].abs(), 0.0);
             for (order, coefficient) in series.iter().enumerate().skip(1) {
                 power *= last.length;
                 size += (coefficient * power).abs();
                 change += order as f64 * coefficient * power;
             }
-            (change - rate * last.length).abs() > astray * size
+            let apart = (change - rate * last.length).abs();
+            (apart > astray * size).then_some((state, apart / last.length))
         };
-        step.coefficients.chunks(step.order + 1).enumerate().any(differs)
+        let states = step.coefficients.chunks(step.order + 1).enumerate();
+        let missed: Vec<(usize, f64)> = states.filter_map(apart).collect();
+        !missed.is_empty() && !self.is_rounding(&missed, now)
+    }
+
+    /// Whether these rates, each by the number of its state, are off by no more than the last digits of the states make: two bodies that
+    /// touch to rounding push each other by what their places are rounded by, which on a step from rest is all that there is.
+    fn is_rounding(&mut self, missed: &[(usize, f64)], now: f64) -> bool {
+        /// Last digits that the sums in a rate lose.
+        const DIGITS: f64 = 4.0;
+        let here: Vec<f64> = missed.iter().map(|(state, _)| self.expansion.rate(*state)).collect();
+        let mut by_rounding = vec![0.0; missed.len()];
+        let mut values = self.values.clone();
+        for state in 0..values.len() {
+            values[state] += DIGITS * f64::EPSILON * self.values[state].abs();
+            let expanded = values[state] != self.values[state] && self.expansion.expand_once(now, &values).is_ok();
+            if expanded {
+                for ((sum, here), (missed, _)) in by_rounding.iter_mut().zip(&here).zip(missed) {
+                    *sum += (self.expansion.rate(*missed) - here).abs();
+                }
+            }
+            values[state] = self.values[state];
+        }
+        // It was expanded here before, and is again.
+        let again = self.expansion.expand_once(now, &self.values).is_ok();
+        again && missed.iter().zip(by_rounding).all(|((_, apart), sum)| *apart <= sum)
     }
 
     /// Back to where the last step began, from where half of it is to be gone.
@@ -464,6 +490,11 @@ impl Expansion {
     /// The series of a state.
     pub(super) fn state(&self, state: usize) -> &[f64] {
         self.tape.series(state)
+    }
+
+    /// The rate of a state.
+    fn rate(&self, state: usize) -> f64 {
+        self.state(state).get(1).copied().unwrap_or(0.0)
     }
 
     /// The series of an event.

@@ -10,7 +10,7 @@
 use std::collections::BTreeMap;
 
 use super::drive::{Quadrature, Wave};
-use super::{Options, Refusal, Unsuited, solve_as_asked};
+use super::{Options, Refusal, Unsuited, solve_in_its_coordinate};
 use crate::expr::{Equation, Expr, ExprError, Typed};
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Note, Solution};
@@ -24,18 +24,27 @@ pub(super) fn is_of_drive(refusal: &Refusal) -> bool {
     matches!(reason, Unsuited::NoWave { .. } | Unsuited::SecondDrive { .. })
 }
 
-/// The answer in the coordinate relative to a base; `None` where no base moves, or there is no answer in that coordinate either.
+/// The answer in the coordinate relative to the first base that leaves no such refusal; `None` where no base moves, or there is no answer
+/// in that coordinate either.
 pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
-    let base = base_motion(oscillator).ok()??;
     let relative = fresh("z", &oscillator.names());
-    let seen = relative_to(oscillator, &base, relative).ok()?;
-    let mut solution = solve_as_asked(&seen, options).ok()?;
-    solution.validity.push(Note::RelativeCoordinate {
-        relative,
-        coordinate: oscillator.coordinate,
-        base,
-    });
-    Some(solution)
+    // Seen from one of two bases the other moves: all are those of the equation as it is, never those of the relative one.
+    for base in base_motions(oscillator).ok()? {
+        let seen = relative_to(oscillator, &base, relative).ok()?;
+        match solve_in_its_coordinate(&seen, options) {
+            Ok(mut solution) => {
+                solution.validity.push(Note::RelativeCoordinate {
+                    relative,
+                    coordinate: oscillator.coordinate,
+                    base,
+                });
+                return Some(solution);
+            }
+            Err(refusal) if is_of_drive(&refusal) => {}
+            Err(_) => return None,
+        }
+    }
+    None
 }
 
 /// The equation in the relative coordinate.
@@ -57,19 +66,32 @@ fn relative_to(oscillator: &Oscillator, base: &Expr, relative: Symbol) -> Result
     Ok(Oscillator::from_equation(&equation)?)
 }
 
-/// The motion of the base; `None` where no sum in the force holds one.
-fn base_motion(oscillator: &Oscillator) -> Result<Option<Expr>, Refusal> {
+/// The motions of all bases, each once, in the order of the sums in the force that hold them.
+fn base_motions(oscillator: &Oscillator) -> Result<Vec<Expr>, Refusal> {
+    /// One for each sum of a force would be tried for ever in a long one; two bases that move differently are rare.
+    const MOST: usize = 8;
     let own = [oscillator.coordinate, oscillator.velocity()];
+    let mut bases: Vec<Expr> = vec![];
     for sum in oscillator.force.unique_nodes().skip(1) {
         let moves = |name: Symbol| Ok::<_, ExprError>(beside(sum, name, own)?.map(|moving| -&moving));
-        if let Some(base) = moves(own[0])? {
-            return Ok(Some(base));
+        let base = match (moves(own[0])?, moves(own[1])?) {
+            (Some(base), _) => Some(base),
+            // A velocity that is no sum of waves leaves the bases that were found.
+            (None, Some(speed)) => match integrated(&speed) {
+                Ok(base) => Some(base),
+                Err(refusal) if bases.is_empty() => return Err(refusal),
+                Err(_) => None,
+            },
+            (None, None) => None,
+        };
+        if let Some(base) = base.filter(|base| !bases.contains(base)) {
+            bases.push(base);
         }
-        if let Some(speed) = moves(own[1])? {
-            return integrated(&speed).map(Some);
+        if bases.len() == MOST {
+            break;
         }
     }
-    Ok(None)
+    Ok(bases)
 }
 
 /// The part of a sum that moves in time beside a coordinate or a velocity, over the factor of that; `None` where the sum is another one.

@@ -700,6 +700,15 @@ fn without_linear_force(refusal: Refusal, oscillator: &Oscillator, options: &Opt
 }
 
 fn solve_as_asked(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    let found = solve_in_its_coordinate(oscillator, options);
+    match found.as_ref().is_err_and(base_motion::is_of_drive) {
+        true => base_motion::solve(oscillator, options).map_or(found, Ok),
+        false => found,
+    }
+}
+
+/// Solves without another coordinate in view.
+fn solve_in_its_coordinate(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let limit = match options.frequency_alone {
         true => HIGHEST_ORDER_OF_FREQUENCY,
         false => HIGHEST_ORDER,
@@ -723,13 +732,9 @@ fn solve_as_asked(oscillator: &Oscillator, options: &Options) -> Result<Solution
             return Err(refusal);
         }
     }
-    let found = match options.method {
+    match options.method {
         Some(method) => solve_by(method, oscillator, options),
         None => default_method::solve(oscillator, options),
-    };
-    match found.as_ref().is_err_and(base_motion::is_of_drive) {
-        true => base_motion::solve(oscillator, options).map_or(found, Ok),
-        false => found,
     }
 }
 

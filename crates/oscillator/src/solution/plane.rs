@@ -522,7 +522,20 @@ fn positive_roots(coefficients: &[f64]) -> Vec<f64> {
         .iter()
         .rposition(|value| *value != 0.0)
         .map_or(0, |last| last + 1);
-    let coefficients = &coefficients[..length];
+    // The polynomial and its derivatives down to the linear one: each has its roots between those of the next.
+    let mut derivatives = vec![coefficients[..length].to_vec()];
+    while let Some(last) = derivatives.last().filter(|last| last.len() > 2) {
+        derivatives.push((1..last.len()).map(|k| k as f64 * last[k]).collect());
+    }
+    let mut roots: Vec<f64> = vec![];
+    for polynomial in derivatives.iter().rev() {
+        roots = roots_between(polynomial, &roots);
+    }
+    roots
+}
+
+/// The positive roots of a polynomial where it changes its sign, the extremes given.
+fn roots_between(coefficients: &[f64], extremes: &[f64]) -> Vec<f64> {
     let Some((leading, rest)) = coefficients.split_last().filter(|(_, rest)| !rest.is_empty()) else {
         return vec![];
     };
@@ -532,27 +545,49 @@ fn positive_roots(coefficients: &[f64]) -> Vec<f64> {
     if !bound.is_finite() {
         return vec![];
     }
-    let slope: Vec<f64> = coefficients
-        .iter()
-        .enumerate()
-        .skip(1)
-        .map(|(k, c)| k as f64 * c)
+    let places: Vec<f64> = [0.0]
+        .into_iter()
+        .chain(extremes.iter().copied())
+        .chain([bound])
         .collect();
-    let mut places = vec![0.0];
-    places.extend(positive_roots(&slope));
-    places.push(bound);
-    let mut roots: Vec<f64> = Vec::new();
-    for pair in places.windows(2) {
-        if value(pair[0]) * value(pair[1]) < 0.0
-            && let Ok(root) = find_root(value, pair[0], pair[1])
-        {
-            roots.push(root);
-        }
-    }
-    roots
+    let between = places.windows(2).filter(|pair| value(pair[0]) * value(pair[1]) < 0.0);
+    between
+        .filter_map(|pair| find_root(value, pair[0], pair[1]).ok())
+        .collect()
 }
 
 /// `u` and `v` of a radius and an angle.
 fn on_circle(radius: f64, angle: f64) -> [f64; 2] {
     [radius * angle.cos(), -radius * angle.sin()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::positive_roots;
+
+    /// `(x - 1)(x - 2)(x - 3)(x + 4)`, and `x^4000 = 2`, whose degree does not meet the stack.
+    #[test]
+    fn positive_roots_lie_between_those_of_the_slope() {
+        let roots = positive_roots(&[-24.0, 38.0, -13.0, -2.0, 1.0, 0.0]);
+        assert_eq!(roots.len(), 3);
+        assert!(
+            roots
+                .iter()
+                .zip(1..)
+                .all(|(root, k)| (root - f64::from(k)).abs() < 1e-9),
+            "{roots:?}"
+        );
+        let mut high = vec![0.0; 4001];
+        (high[0], high[4000]) = (-2.0, 1.0);
+        let roots = positive_roots(&high);
+        assert!(
+            matches!(roots.as_slice(), [root] if (root.powi(4000) - 2.0).abs() < 1e-9),
+            "{roots:?}"
+        );
+        assert!(
+            positive_roots(&[1.0, 1.0]).is_empty()
+                && positive_roots(&[0.0]).is_empty()
+                && positive_roots(&[]).is_empty()
+        );
+    }
 }

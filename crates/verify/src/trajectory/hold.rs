@@ -15,7 +15,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Course, Piece, Section, TrajectoryError};
+use super::{Course, Piece, Section, TrajectoryError, surplus};
 use crate::exact::{from_f64, ratio};
 use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
 use crate::mechanics::{Rates, linear};
@@ -69,6 +69,8 @@ enum Regime {
     Typed,
     /// The motion stays on it.
     Held,
+    /// The motion stays on it where it stays on others; its friction is that of the one of this number, in parts of the bounds, with this sign.
+    Tied(usize, i64),
     /// The motion has left it to this side, 1 or -1, and has not come back yet.
     Left(i64),
 }
@@ -139,15 +141,20 @@ impl Course {
             pieces.push(piece);
             let Some(last) = last else { break reason };
             state = last;
+            // What else may hold it is looked for where there is more friction than is needed.
+            let hit = match reason {
+                End::Event(event) => hit(&regimes, event.saturating_sub(recorded)),
+                _ => None,
+            };
             let released = match reason {
-                End::Event(event) => released(&mut regimes, event.saturating_sub(recorded)),
+                End::Event(event) => hit.is_none() && released(&mut regimes, event.saturating_sub(recorded)),
                 End::Sticks => false,
                 reason => break reason,
             };
             if !released {
                 regimes = match surfaces(equations, end, &state)? {
                     found if found.is_empty() => break End::Sticks,
-                    found => match regimes_at(equations, found, end, &state)? {
+                    found => match regimes_at(equations, found, end, &state, hit.as_ref())? {
                         Some(regimes) => regimes,
                         None => break End::Sticks,
                     },
@@ -246,6 +253,15 @@ fn released(regimes: &mut Regimes, event: usize) -> bool {
         }
         _ => false,
     }
+}
+
+/// The surface whose friction reaches its bound in an event, where others have theirs from it or from each other.
+fn hit(regimes: &Regimes, event: usize) -> Option<Expr> {
+    let surplus = regimes.iter().any(|(_, regime)| matches!(regime, Regime::Tied(..)));
+    let (surface, _) = regimes
+        .get(event / EVENTS)
+        .filter(|(_, regime)| surplus && *regime == Regime::Held)?;
+    Some(surface.u.clone())
 }
 
 /// The values of all symbols.
@@ -357,12 +373,13 @@ fn surfaces(equations: &StateEquations, time: f64, state: &[f64]) -> Result<Vec<
 }
 
 /// How each of these surfaces, on which a state is, counts from there on: held where the friction that this needs is within its bound.
-/// Nothing where that cannot be told.
+/// Nothing where that cannot be told. Of the surface that was just hit the friction is at its bound, unless others take it over.
 fn regimes_at(
     equations: &StateEquations,
     found: Vec<Surface>,
     time: f64,
     state: &[f64],
+    hit: Option<&Expr>,
 ) -> Result<Option<Regimes>, ExprError> {
     let mut numbers = numbers_at(equations, time, state);
     let mut regimes = Regimes::new();
@@ -377,6 +394,9 @@ fn regimes_at(
     }
     let mut excess = f64::INFINITY;
     loop {
+        if !tie(equations, &mut regimes, &numbers)? {
+            return Ok(None);
+        }
         let Some(sliding) = sliding(equations, &regimes, &numbers)? else {
             return Ok(None);
         };
@@ -394,12 +414,24 @@ fn regimes_at(
             if share.is_nan() {
                 return Ok(None);
             }
-            if share.abs() > 1.0 + ROUNDING && worst.is_none_or(|(_, largest)| share.abs() > largest.abs()) {
+            let is_hit = regimes.iter().enumerate().any(|(other, (surface, regime))| {
+                let of_one_size = other == *index || matches!(regime, Regime::Tied(lead, _) if lead == index);
+                of_one_size && hit == Some(&surface.u)
+            });
+            let bound = if is_hit { 1.0 - ROUNDING } else { 1.0 + ROUNDING };
+            if share.abs() > bound && worst.is_none_or(|(_, largest)| share.abs() > largest.abs()) {
                 worst = Some((*index, share));
             }
         }
         if let Some((index, share)) = worst {
-            regimes[index].1 = Regime::Left(if share > 0.0 { 1 } else { -1 });
+            let side = if share > 0.0 { 1 } else { -1 };
+            for (other, (_, regime)) in regimes.iter_mut().enumerate() {
+                *regime = match *regime {
+                    Regime::Tied(lead, sign) if lead == index => Regime::Left(sign * side),
+                    _ if other == index => Regime::Left(side),
+                    regime => regime,
+                };
+            }
             excess = excess.min(share.abs() - 1.0);
             continue;
         }
@@ -408,6 +440,153 @@ fn regimes_at(
             regimes.iter_mut().for_each(|(_, regime)| *regime = Regime::Typed);
         }
         return Ok(Some(regimes));
+    }
+}
+
+/// Gives shares of one size to the frictions that the equations leave open: there are more of them at rest than independent velocities.
+/// `false` where that cannot be told.
+fn tie(equations: &StateEquations, regimes: &mut Regimes, numbers: &BTreeMap<Symbol, f64>) -> Result<bool, ExprError> {
+    for (_, regime) in regimes.iter_mut() {
+        if matches!(regime, Regime::Tied(..)) {
+            *regime = Regime::Held;
+        }
+    }
+    let Some(rates) = SurfaceRates::new(equations, regimes, numbers)? else {
+        return Ok(false);
+    };
+    if rates.independent.len() == rates.on.len() {
+        return Ok(true);
+    }
+    let mut numbers = numbers.clone();
+    for (name, value) in &rates.fixed {
+        let Ok(value) = value.evaluate(&numbers) else {
+            return Ok(false);
+        };
+        numbers.insert(*name, value);
+    }
+    let none: BTreeMap<Symbol, Expr> = rates
+        .on
+        .iter()
+        .map(|index| (rates.share(*index), Expr::zero()))
+        .collect();
+    let (mut matrix, mut right) = (Vec::new(), Vec::new());
+    for index in &rates.on {
+        let rate = rates.of(equations, &regimes[*index].0.u)?;
+        let mut row = Vec::new();
+        for column in &rates.on {
+            let entry = rate.differentiate(rates.share(*column))?.substitute_all(&none)?;
+            let Ok(entry) = entry.evaluate(&numbers) else {
+                return Ok(false);
+            };
+            row.push(entry);
+        }
+        let Ok(free) = rate.substitute_all(&none)?.evaluate(&numbers) else {
+            return Ok(false);
+        };
+        matrix.push(row);
+        right.push(-free);
+    }
+    let Some(groups) = surplus::of_one_size(&matrix, &right) else {
+        return Ok(false);
+    };
+    for group in groups {
+        let Some(((lead, first), others)) = group.split_first() else {
+            continue;
+        };
+        for (other, sign) in others {
+            let regime = &mut regimes[rates.on[*other]].1;
+            if *regime != Regime::Held {
+                return Ok(false);
+            }
+            *regime = Regime::Tied(rates.on[*lead], sign * first);
+        }
+    }
+    Ok(true)
+}
+
+/// The rates of all states with a letter for each friction that holds something.
+struct SurfaceRates {
+    /// The rates of all states.
+    right: Vec<Expr>,
+    /// The velocities that are held, in terms of the other states.
+    fixed: BTreeMap<Symbol, Expr>,
+    /// The surfaces that the motion stays on.
+    on: Vec<usize>,
+    /// Those that do not follow from the ones before.
+    independent: Vec<usize>,
+    /// The first letters of the names.
+    stem: String,
+}
+
+impl SurfaceRates {
+    fn new(
+        equations: &StateEquations,
+        regimes: &Regimes,
+        numbers: &BTreeMap<Symbol, f64>,
+    ) -> Result<Option<Self>, ExprError> {
+        let taken: Vec<Symbol> = equations
+            .states
+            .iter()
+            .chain(equations.values.keys())
+            .copied()
+            .collect();
+        let on: Vec<usize> = (0..regimes.len())
+            .filter(|index| matches!(regimes[*index].1, Regime::Held | Regime::Tied(..)))
+            .collect();
+        let mut rates = Self {
+            right: Vec::new(),
+            fixed: BTreeMap::new(),
+            on,
+            independent: Vec::new(),
+            stem: fresh_stem("share", &taken),
+        };
+        // The velocities that are held, each in terms of what is left.
+        for index in rates.on.clone() {
+            let typed = &regimes[index].0.u;
+            let u = typed.substitute_all(&rates.fixed)?.expand()?;
+            let slope_of = |u: &Expr| -> Option<f64> {
+                let (_, coefficient) = leading_velocity(u, equations, numbers)?;
+                Some(coefficient.evaluate(numbers).ok()?.abs())
+            };
+            let Some(slope) = slope_of(typed) else {
+                return Ok(None);
+            };
+            // It moves with those before.
+            if velocities(equations).all(|velocity| !u.contains(velocity))
+                || slope_of(&u).is_some_and(|left| left <= AT_REST * slope)
+            {
+                continue;
+            }
+            let Some((velocity, value)) = solved(&u, equations, numbers)? else {
+                return Ok(None);
+            };
+            for other in rates.fixed.values_mut() {
+                *other = other.substitute(velocity, &value)?;
+            }
+            rates.fixed.insert(velocity, value);
+            rates.independent.push(index);
+        }
+        let replaced = |expression: &Expr| -> Result<Expr, ExprError> {
+            expression
+                .fold(|expr, children: &[Expr]| on_surfaces(expr, children, regimes, &|index| rates.share(index)))?
+                .substitute_all(&rates.fixed)
+        };
+        let right = equations.right.iter().map(replaced).collect::<Result<_, _>>()?;
+        Ok(Some(Self { right, ..rates }))
+    }
+
+    /// The letter of a friction in parts of its bound.
+    fn share(&self, index: usize) -> Symbol {
+        Symbol::new(&format!("{}{index}", self.stem))
+    }
+
+    /// The rate of an expression.
+    fn of(&self, equations: &StateEquations, u: &Expr) -> Result<Expr, ExprError> {
+        let mut parts = vec![u.differentiate(Symbol::new("t"))?];
+        for (state, rate) in equations.states.iter().zip(&self.right) {
+            parts.push(u.differentiate(*state)? * rate);
+        }
+        Expr::sum(parts).substitute_all(&self.fixed)
     }
 }
 
@@ -432,47 +611,22 @@ fn sliding(
     regimes: &Regimes,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<Option<Sliding>, ExprError> {
-    let taken: Vec<Symbol> = equations
-        .states
-        .iter()
-        .chain(equations.values.keys())
-        .copied()
-        .collect();
-    let stem = fresh_stem("share", &taken);
-    let share = |index: usize| Symbol::new(&format!("{stem}{index}"));
+    let Some(rates) = SurfaceRates::new(equations, regimes, numbers)? else {
+        return Ok(None);
+    };
     let held: Vec<usize> = (0..regimes.len())
         .filter(|index| regimes[*index].1 == Regime::Held)
         .collect();
-    // The velocities that are held, each in terms of what is left.
-    let mut fixed: BTreeMap<Symbol, Expr> = BTreeMap::new();
-    for index in &held {
-        let u = regimes[*index].0.u.substitute_all(&fixed)?;
-        let Some((velocity, value)) = solved(&u, equations, numbers)? else {
-            return Ok(None);
-        };
-        for other in fixed.values_mut() {
-            *other = other.substitute(velocity, &value)?;
-        }
-        fixed.insert(velocity, value);
+    if held.len() != rates.independent.len() {
+        return Ok(None);
     }
-    let replaced = |expression: &Expr| -> Result<Expr, ExprError> {
-        expression
-            .fold(|expr, children: &[Expr]| on_surfaces(expr, children, regimes, &share))?
-            .substitute_all(&fixed)
-    };
-    let right: Vec<Expr> = equations.right.iter().map(replaced).collect::<Result<_, _>>()?;
-    let rate_of = |u: &Expr| -> Result<Expr, ExprError> {
-        let mut parts = vec![u.differentiate(Symbol::new("t"))?];
-        for (state, rate) in equations.states.iter().zip(&right) {
-            parts.push(u.differentiate(*state)? * rate);
-        }
-        Expr::sum(parts).substitute_all(&fixed)
-    };
+    let share = |index: usize| rates.share(index);
+    let (right, fixed) = (&rates.right, &rates.fixed);
     let mut matrix = Vec::new();
     let mut rest = Vec::new();
     let none: BTreeMap<Symbol, Expr> = held.iter().map(|index| (share(*index), Expr::zero())).collect();
-    for index in &held {
-        let rate = rate_of(&regimes[*index].0.u)?;
+    for index in &rates.independent {
+        let rate = rates.of(equations, &regimes[*index].0.u)?;
         let row: Vec<Expr> = held
             .iter()
             .map(|column| rate.differentiate(share(*column)))
@@ -488,7 +642,8 @@ fn sliding(
         rest.push(-rate.substitute_all(&none)?);
     }
     let jumps: Vec<Expr> = (0..held.len()).map(|row| matrix[row][row].clone()).collect();
-    if jumps.iter().any(Expr::is_zero) {
+    // Of frictions of one size each may act on another surface than its own.
+    if held == rates.independent && jumps.iter().any(Expr::is_zero) {
         return Ok(None);
     }
     let singular = || crate::mechanics::MechanicsError::Singular(Expr::zero());
@@ -507,7 +662,7 @@ fn sliding(
     let mut events = Vec::new();
     for (index, (surface, regime)) in regimes.iter().enumerate() {
         events.extend(match regime {
-            Regime::Typed => [(); EVENTS].map(|()| Event::record(Expr::from(1))),
+            Regime::Typed | Regime::Tied(..) => [(); EVENTS].map(|()| Event::record(Expr::from(1))),
             Regime::Held => {
                 let share = values.get(&share(index)).cloned().unwrap_or_else(Expr::zero);
                 let [one, more] = [1.0, 1.0 + 2.0 * ROUNDING].map(number);
@@ -519,7 +674,7 @@ fn sliding(
                 ]
             }
             Regime::Left(side) => {
-                let away = Expr::from(*side) * surface.u.substitute_all(&fixed)?;
+                let away = Expr::from(*side) * surface.u.substitute_all(fixed)?;
                 let unseen = number(UNSEEN * surface.strength);
                 [
                     Event::stop(away.clone()).falling(),
@@ -533,7 +688,7 @@ fn sliding(
     Ok(Some(Sliding {
         right,
         held: !held.is_empty(),
-        fixed,
+        fixed: rates.fixed,
         shares,
         jumps,
         events,
@@ -566,6 +721,7 @@ fn on_surfaces(
     let sign = match meant {
         None | Some((_, Regime::Typed, _)) => return expr.with_children(children),
         Some((index, Regime::Held, same)) => Expr::from(same) * Expr::from(share(index)),
+        Some((_, Regime::Tied(lead, sign), same)) => Expr::from(same * sign) * Expr::from(share(lead)),
         Some((_, Regime::Left(side), same)) => Expr::from(same * side),
     };
     Ok(match (function, meant, arguments.first()) {

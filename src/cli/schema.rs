@@ -30,7 +30,7 @@ impl Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome {
-        result: whole(json_text(&arguments.kind.json_schema())?),
+        result: whole(arguments.kind.json_schema().to_owned()),
         picture: None,
         note: None,
         verdict: None,

@@ -23,7 +23,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use thiserror::Error;
 
-use crate::expr::{Expr, ExprError, LostDigits};
+use crate::expr::{CompiledFunction, Expr, ExprError, LostDigits};
 use crate::interrupt::Interrupt;
 use crate::mechanics::{Equations, MechanicsError, Mechanism, Rates};
 use crate::oscillator::Oscillator;
@@ -414,19 +414,18 @@ impl Trajectory {
         if !self.course.missing_for_energy().is_empty() {
             return None;
         }
+        // Compiled once: the account takes the energy and its terms at two thousand times.
+        let value = self.compiled(&energy.value)?;
+        let parts: Vec<_> = energy.value.terms().iter().filter_map(|part| self.compiled(part)).collect();
         let count = self.course.rates.states.len();
         let at = |time: f64| {
             let state = self.all_at(time)?;
-            let mut values = self.course.values.clone();
-            values.insert(Symbol::new("t"), time);
-            values.extend(self.course.rates.states.iter().copied().zip(state.iter().copied()));
-            let works = state[count..].to_vec();
+            let (state, works) = state.split_at(count);
             // Kinetic and potential energy may cancel each other: the largest of them counts beside their sum.
-            let parts = energy.value.terms().iter().map(|part| part.evaluate(&values));
-            let largest = parts
-                .filter_map(Result::ok)
-                .fold(0.0, |largest: f64, part| largest.max(part.abs()));
-            Some((energy.value.evaluate(&values).ok()?, works, largest))
+            let parts = parts.iter().map(|part| part(time, state).abs());
+            let largest = parts.filter(|part| part.is_finite()).fold(0.0, f64::max);
+            let now = Some(value(time, state)).filter(|now| now.is_finite())?;
+            Some((now, works.to_vec(), largest))
         };
         // The sum of nothing is minus zero.
         let sum = |works: &[f64]| works.iter().fold(0.0, |sum, work| sum + work);
@@ -446,6 +445,16 @@ impl Trajectory {
             works: energy.powers.iter().map(|(name, _)| name.clone()).zip(works).collect(),
             residual: if moved > 0.0 { astray / moved } else { 0.0 },
         })
+    }
+
+    /// An expression as a function of the time and the states, at the values of this motion; `None` where a name has no value.
+    fn compiled(&self, expression: &Expr) -> Option<impl Fn(f64, &[f64]) -> f64> {
+        let states = &self.course.rates.states;
+        let moving: Vec<Symbol> = std::iter::once(Symbol::new("t")).chain(states.iter().copied()).collect();
+        let constant = self.course.values.iter().filter(|(name, _)| !moving.contains(name));
+        let (constants, numbers): (Vec<Symbol>, Vec<f64>) = constant.map(|(name, value)| (*name, *value)).unzip();
+        let function = CompiledFunction::new(expression, &[moving, constants].concat()).ok()?;
+        Some(move |time: f64, state: &[f64]| function.call(&[&[time], state, &numbers].concat()))
     }
 
     /// The states and the work so far; nothing outside of the motion.

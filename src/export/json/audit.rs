@@ -1,5 +1,7 @@
 //! Kind `audit`: claims of a publication, computed again.
 
+#[cfg(feature = "schema")]
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -8,11 +10,12 @@ use crate::audit::{Audit, Computed, Finding, Tried as TriedClaim, Verdict};
 use crate::report::{audit_computed, audit_entry, audit_printed};
 
 /// Claims of a publication, computed again, with a verdict each.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct AuditDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::Audit.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Audit.schema())))]
     pub schema: String,
     /// The publication; empty where the file names none.
     pub title: String,
@@ -25,8 +28,9 @@ pub struct AuditDocument {
 }
 
 /// How many claims have each verdict.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "AuditCounts")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditCounts"))]
 pub struct Counts {
     /// Reproduced to every printed digit.
     pub reproduced: usize,
@@ -39,8 +43,9 @@ pub struct Counts {
 }
 
 /// One claim.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "AuditClaim")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditClaim"))]
 pub struct Claim {
     /// Its name in the file.
     pub id: String,
@@ -53,7 +58,7 @@ pub struct Claim {
     /// What is computed, in one line, with the assumption where there is one; empty where nothing is.
     pub computed: String,
     /// The verdict.
-    #[schemars(schema_with = "verdicts")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "verdicts"))]
     pub verdict: String,
     /// What is supposed where it is reproduced under an assumption; null where it is not.
     pub assumption: Option<String>,
@@ -76,8 +81,9 @@ pub struct Claim {
 }
 
 /// One thing that is printed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "AuditEntry")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditEntry"))]
 pub struct Entry {
     /// As it is printed.
     pub printed: String,
@@ -90,8 +96,9 @@ pub struct Entry {
 }
 
 /// The claim under some suppositions.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "AuditTried")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditTried"))]
 pub struct Tried {
     /// What is supposed; empty for the claim alone.
     pub supposing: Vec<String>,
@@ -102,8 +109,9 @@ pub struct Tried {
 }
 
 /// What a claim asks of a number that is not printed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "AuditUnknown")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditUnknown"))]
 pub struct Unknown {
     /// Its name.
     pub name: String,
@@ -118,6 +126,7 @@ pub struct Unknown {
 }
 
 /// The schema of the name of a verdict.
+#[cfg(feature = "schema")]
 fn verdicts(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
     schemars::json_schema!({ "type": "string", "enum": Verdict::ALL.map(Verdict::name) })
 }

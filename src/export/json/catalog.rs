@@ -1,25 +1,29 @@
 //! Kind `catalog`: the classical oscillators.
 
+#[cfg(feature = "schema")]
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Kind, methods};
+use super::{Kind};
 use crate::catalog::{self, CATALOG};
 
 /// The classical oscillators that the program knows by name.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct CatalogDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::Catalog.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Catalog.schema())))]
     pub schema: String,
     /// The oscillators, in the order of the listing.
     pub entries: Vec<Entry>,
 }
 
 /// A classical oscillator.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Entry {
     /// The name on the command line.
     pub name: String,
@@ -36,11 +40,12 @@ pub struct Entry {
 }
 
 /// Whether a method applies to an oscillator.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Applicability {
     /// The method, by its name on the command line.
-    #[schemars(schema_with = "methods")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "super::generated_schema::methods"))]
     pub method: String,
     /// Whether it applies.
     pub applies: bool,

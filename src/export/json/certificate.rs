@@ -4,6 +4,7 @@
 //! single rounded operation. A reader treats what it reads as hostile, and so does [`CertificateDocument::read`].
 
 use num_traits::Zero as _;
+#[cfg(feature = "schema")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -27,15 +28,16 @@ const LONGEST_FORCE: usize = 2000;
 
 /// Numbers from which a motion of `x'' + f(x) = 0` can be proved, and how far a formula for it is off. All numbers are text: integers,
 /// fractions such as `-1/6`, decimals such as `2.5e-33`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct CertificateDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::Certificate.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Certificate.schema())))]
     pub schema: String,
     /// The equation that f belongs to.
-    #[schemars(extend("const" = EQUATION))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = EQUATION)))]
     pub ode: String,
     /// The force: the coefficients of a polynomial by rising power of x, or an expression in x.
     pub f: ForceDocument,
@@ -63,7 +65,7 @@ pub struct CertificateDocument {
     /// The norm is sigma |mu| + sum |c_k|, sigma = 2^sigma_log2.
     pub sigma_log2: i32,
     /// The weight of a harmonic from one to the next; 1.
-    #[schemars(extend("const" = "1"))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = "1")))]
     pub nu: String,
     /// The radius that is claimed: the true mu and c are so near in the norm.
     pub claim_r: String,
@@ -75,9 +77,10 @@ pub struct CertificateDocument {
 const EQUATION: &str = "x''+f(x)=0";
 
 /// A force.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(untagged)]
-#[schemars(rename = "CertificateForce")]
+#[cfg_attr(feature = "schema", schemars(rename = "CertificateForce"))]
 pub enum ForceDocument {
     /// The coefficients of a polynomial, fractions, that of x^0 first.
     Polynomial(Vec<String>),
@@ -86,9 +89,10 @@ pub enum ForceDocument {
 }
 
 /// A formula `x~(t) = X~(omega~ t)` with its numbers, and what is proved of them, each from below and from above.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(deny_unknown_fields, rename = "CertificateFormula")]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "CertificateFormula"))]
 pub struct FormulaDocument {
     /// The law as it was derived: `omega = ...` or `omega^2 = ...` with definitions of letters behind commas, which has to give `omega` at `values`
     /// to its last digits. What is of another form is words: nothing is checked against them.

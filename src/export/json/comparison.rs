@@ -1,21 +1,24 @@
 //! Kind `comparison`: every method on one equation.
 
+#[cfg(feature = "schema")]
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::number::finite;
 use super::verification::{numbers, values};
-use super::{Constant, Kind, Map, methods};
+use super::{Constant, Kind, Map};
 use crate::solution::Degrees;
 use crate::verify::comparison::{Comparison, Refused, Row};
 use crate::verify::{Verdict, validity};
 
 /// Every method on one equation at given values, beside the true motion of the equation as it was typed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ComparisonDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::Comparison.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Comparison.schema())))]
     pub schema: String,
     /// The equation of motion as it was understood, `... = 0`; time is its own, so frequencies are in radians per unit of it.
     pub equation: String,
@@ -34,7 +37,8 @@ pub struct ComparisonDocument {
 }
 
 /// A row of the table.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(untagged)]
 pub enum MethodRow {
     /// A method that applies.
@@ -44,18 +48,19 @@ pub enum MethodRow {
 }
 
 /// A method that applies.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ApplyingRow {
     /// The method, by its name on the command line.
-    #[schemars(schema_with = "methods")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "super::generated_schema::methods"))]
     pub method: String,
     /// The highest power kept of the small parameter, inclusive; for a balance the number of harmonics, for iterations the passes.
     pub order: u32,
     /// The degrees of an approximant, of numerator and denominator or of P, Q and R; null for every other method.
     pub degrees: Option<Vec<u32>>,
     /// Whether the method applies.
-    #[schemars(extend("const" = true))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = true)))]
     pub applies: bool,
     /// Why there is no frequency at these values, in words; null where there is one.
     pub reason: Option<String>,
@@ -72,21 +77,22 @@ pub struct ApplyingRow {
     /// The range of the amplitude of the table's first row in which the error stays within the tolerance; null where it is not known.
     pub reach: Option<Reach>,
     /// Whether |relative_error| is within the tolerance; null where the true frequency is not known.
-    #[schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name(), null]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name(), null])))]
     pub verdict: Option<String>,
 }
 
 /// A method that does not apply.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct RefusedRow {
     /// The method, by its name on the command line.
-    #[schemars(schema_with = "methods")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "super::generated_schema::methods"))]
     pub method: String,
     /// Null.
     pub order: (),
     /// Whether the method applies.
-    #[schemars(extend("const" = false))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = false)))]
     pub applies: bool,
     /// Why it does not, in words.
     pub reason: String,
@@ -105,8 +111,9 @@ pub struct RefusedRow {
 }
 
 /// How far a formula is good.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Reach {
     /// The size of the amplitude from which on the error stays within the tolerance, for motions over several wells, which begin at the
     /// separatrix; null for those that begin at rest.

@@ -2,6 +2,8 @@
 //!
 //! Every number is text, as in the certificate of a conservative motion, from which it is told by `ode`.
 
+#[cfg(feature = "schema")]
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -23,15 +25,16 @@ pub const EQUATION_WITH_DRIVE: &str = "x''+g(x)*x'+h(x,c,s)=0";
 /// Numbers from which a limit cycle of `x'' + g(x) x' + h(x) = 0` can be proved, or a steady motion with a drive in h, and how far a formula
 /// for it is off. All numbers are text: integers, fractions such as `-1/6`, decimals such as `2.5e-33`. The first harmonic of a
 /// cycle has no sine.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct DampedCertificateDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::Certificate.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Certificate.schema())))]
     pub schema: String,
     /// The equation that g and h belong to.
-    #[schemars(extend("enum" = [EQUATION_OF_CYCLES, EQUATION_WITH_DRIVE]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = [EQUATION_OF_CYCLES, EQUATION_WITH_DRIVE])))]
     pub ode: String,
     /// The damping by velocity: the coefficients of a polynomial by rising power of x, or an expression in x.
     pub g: ForceDocument,
@@ -67,7 +70,7 @@ pub struct DampedCertificateDocument {
     /// The norm is sigma |p| + sum (|c_k| + |s_k|), sigma = 2^sigma_log2; 0 with a drive, where there is no p.
     pub sigma_log2: i32,
     /// The weight of a harmonic from one to the next; 1.
-    #[schemars(extend("const" = "1"))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = "1")))]
     pub nu: String,
     /// The radius that is claimed: there is exactly one motion whose p, c and s are so near in the norm, where `odd` exactly one of odd harmonics.
     pub claim_r: String,
@@ -76,9 +79,10 @@ pub struct DampedCertificateDocument {
 }
 
 /// What drives a motion.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(deny_unknown_fields, rename = "CertificateDrive")]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "CertificateDrive"))]
 pub struct DriveDocument {
     /// The driving frequency, a positive fraction, exact.
     #[serde(rename = "Omega")]
@@ -91,9 +95,10 @@ pub struct DriveDocument {
 }
 
 /// A formula `x~(t) = X~(omega~ t)` with its numbers, and what is proved of them, each from below and from above.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(deny_unknown_fields, rename = "CertificateFormulaOfCycle")]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "CertificateFormulaOfCycle"))]
 pub struct DampedFormulaDocument {
     /// The law as it was derived: of a cycle `omega = ...` or `omega^2 = ...`, with a drive `x = ...` in t, with definitions of letters behind
     /// commas; it has to give `omega`, with a drive `c` and `s`, at `values` to the last digits. What is of another form is words: nothing is

@@ -1,5 +1,7 @@
 //! Kind `friction`: equation (6) beside Coulomb's law.
 
+#[cfg(feature = "schema")]
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,11 +11,12 @@ use crate::impact::friction::{Entry, FrictionStudy};
 
 /// The paper's equation (6), (2/pi) atan(100 x') in place of Coulomb's sgn(x'), beside that law: Table 1 of the paper, and a swing
 /// near rest. Angles are in radians, time is in units of 1/omega of small swings, sqrt(L/g).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct FrictionDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::Friction.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Friction.schema())))]
     pub schema: String,
     /// The friction alpha, the torque in units of m g L.
     pub alpha: f64,
@@ -42,8 +45,9 @@ pub struct FrictionDocument {
 }
 
 /// The two laws at one speed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Speed {
     /// The speed, in radians per unit of time.
     pub speed: f64,
@@ -60,8 +64,9 @@ pub struct Speed {
 }
 
 /// A number that the paper prints, and how its digits come out with the best value of pi.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Printed {
     /// The number as it is printed.
     pub text: String,
@@ -72,8 +77,9 @@ pub struct Printed {
 }
 
 /// How many of the printed entries come out with one value of pi.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "PiReading")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "PiReading"))]
 pub struct Reading {
     /// The value as it is written, such as `22/7`.
     pub pi: String,
@@ -92,8 +98,9 @@ pub struct Reading {
 }
 
 /// The first cycle by the arctangent.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct FirstCycle {
     /// When it ends, in units of time.
     pub until: f64,
@@ -110,8 +117,9 @@ pub struct FirstCycle {
 }
 
 /// Where Coulomb's law stops the swing for good.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Stop {
     /// When, in units of time.
     pub t: f64,
@@ -126,8 +134,9 @@ pub struct Stop {
 }
 
 /// The motion by the arctangent near rest.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Creep {
     /// The linear damping c near rest, x'' + c x' + x = 0: 200 alpha/pi.
     pub damping: f64,
@@ -144,8 +153,9 @@ pub struct Creep {
 }
 
 /// A state after the stop.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "CreepSample")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "CreepSample"))]
 pub struct Sample {
     /// The time since both were at rest where Coulomb's law stops the swing, in units of time.
     pub t: f64,
@@ -156,8 +166,9 @@ pub struct Sample {
 }
 
 /// Rest times by either law, in units of time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct RestTime {
     /// By Coulomb's law; null where there is none.
     pub coulomb: Option<f64>,

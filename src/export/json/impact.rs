@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use num_complex::Complex64;
+#[cfg(feature = "schema")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -18,11 +19,12 @@ use crate::verify::Verdict;
 /// A swing released from rest that hits an elastic barrier: approach, contact and return in closed form, beside Runge-Kutta on the
 /// original equation. For the pendulum angles are in radians and time is in units of 1/omega of small swings, sqrt(L/g); for an equation
 /// of the user's both have its units.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ImpactDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::Impact.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Impact.schema())))]
     pub schema: String,
     /// The equation of motion that is judged, `... = 0`, its force on the barrier included.
     pub equation: String,
@@ -58,8 +60,9 @@ pub struct ImpactDocument {
 }
 
 /// The numbers of an impact in SI units: m L^2 x'' + m g L sin x + k L (L (x - x_c))^(3/2) = 0.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Si {
     /// The mass m, in kg.
     pub mass: f64,
@@ -72,7 +75,7 @@ pub struct Si {
     /// The modulus E of the contact, in Pa; null where gamma is given.
     pub modulus: Option<f64>,
     /// Whose modulus that is: `barrier` alone as in the paper, `rigid-sphere` for E1/(1 - nu1^2), or `both`; null where gamma is given.
-    #[schemars(extend("enum" = ["barrier", "rigid-sphere", "both", null]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ["barrier", "rigid-sphere", "both", null])))]
     pub modulus_of: Option<String>,
     /// The stiffness k of the contact, in N/m^(3/2): gamma m g / L^(3/2).
     pub contact_stiffness: f64,
@@ -107,8 +110,9 @@ pub struct Si {
 }
 
 /// The contact time that the paper prints, compared with and never computed from.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct PrintedContactTime {
     /// As printed, in s.
     pub value: f64,
@@ -123,22 +127,24 @@ pub struct PrintedContactTime {
 }
 
 /// A contact time over the printed one.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct OverPrinted {
     /// The contact time of this reading over the printed one.
     pub ratio: f64,
     /// Whether that is one within the tolerance.
-    #[schemars(extend("enum" = ["reproduced", "not-reproduced"]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ["reproduced", "not-reproduced"])))]
     pub verdict: String,
 }
 
 /// A yield limit that is stated.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct YieldLimit {
     /// Whose it is.
-    #[schemars(extend("enum" = ["sphere", "barrier"]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ["sphere", "barrier"])))]
     pub body: String,
     /// The limit Y, in Pa.
     pub limit: f64,
@@ -149,8 +155,9 @@ pub struct YieldLimit {
 }
 
 /// The law of the derived phases.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct DerivedLaw {
     /// The answer of the method; where `sign` is -1 it is that of the equation of -x.
     pub law: SolutionDocument,
@@ -163,8 +170,9 @@ pub struct DerivedLaw {
 }
 
 /// The numbers of an impact.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Parameters {
     /// The distance of the turning point from the equilibrium, in radians.
     pub amplitude: f64,
@@ -175,7 +183,7 @@ pub struct Parameters {
     /// The place of the barrier, in radians.
     pub barrier: f64,
     /// On which side of its place the barrier is.
-    #[schemars(extend("enum" = ["left", "right"]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ["left", "right"])))]
     pub side: String,
     /// The force of the barrier as an expression in the depth; null for that of Hertz, gamma*d^(3/2).
     pub force: Option<String>,
@@ -188,22 +196,23 @@ pub struct Parameters {
     /// The order of `law` in the amplitude; null where there is none.
     pub order: Option<u32>,
     /// The law of the contact in the derived phases.
-    #[schemars(extend("enum" = law_names()))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = law_names())))]
     pub contact_law: String,
     /// The damping lambda of the contact by Hunt and Crossley, in units of time per radian; null where it loses nothing.
     pub lambda: Option<f64>,
     /// The coefficient of restitution that lambda follows from; null where it does not.
     pub restitution: Option<f64>,
     /// How the line is fitted that replaces the force of the barrier.
-    #[schemars(extend("enum" = Rule::ALL.map(Rule::name)))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = Rule::ALL.map(Rule::name))))]
     pub linearisation: String,
     /// The relative error of a step of Runge-Kutta.
     pub integrator_tolerance: f64,
 }
 
 /// One phase of the motion. Its closed form counts the time s = t - clock.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Phase {
     /// Which phase it is.
     pub name: PhaseName,
@@ -227,8 +236,9 @@ pub struct Phase {
 
 /// x = centre + parabola * s * (duration - s) + the sum of cos * cos(harmonic * frequency * s) + sin * sin(harmonic * frequency * s),
 /// with s = t - clock.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "PhaseDisplacement")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "PhaseDisplacement"))]
 pub struct Displacement {
     /// What does not oscillate, in radians.
     pub centre: f64,
@@ -243,8 +253,9 @@ pub struct Displacement {
 }
 
 /// A harmonic of a phase, in numbers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "PhaseHarmonic")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "PhaseHarmonic"))]
 pub struct Harmonic {
     /// Its number.
     pub harmonic: u32,
@@ -255,7 +266,8 @@ pub struct Harmonic {
 }
 
 /// The name of a phase.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum PhaseName {
     /// From the release to the touch.
@@ -267,8 +279,9 @@ pub enum PhaseName {
 }
 
 /// A state of the pendulum.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct State {
     /// The displacement, in radians.
     pub x: f64,
@@ -277,7 +290,8 @@ pub struct State {
 }
 
 /// The numbers of a closed form of one wave, with the time s = t - start of its phase.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(untagged)]
 pub enum Coefficients {
     /// Contact: x = centre + re cos(frequency s) - im sin(frequency s).
@@ -287,8 +301,9 @@ pub enum Coefficients {
 }
 
 /// x = centre + re cos(frequency s) - im sin(frequency s), s = t - start.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Oscillation {
     /// The point oscillated about, in radians.
     pub centre: f64,
@@ -299,8 +314,9 @@ pub struct Oscillation {
 }
 
 /// A complex amplitude.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Amplitude {
     /// The factor of cos(frequency s), in radians.
     pub re: f64,
@@ -309,8 +325,9 @@ pub struct Amplitude {
 }
 
 /// x = amplitude cos(frequency s + phase), s = t - start.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Cosine {
     /// The amplitude with its sign, in radians.
     pub amplitude: f64,
@@ -321,8 +338,9 @@ pub struct Cosine {
 }
 
 /// The numbers of the contact.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Contact {
     /// The speed at the touch, in radians per unit of time.
     pub speed: Quantity,
@@ -333,8 +351,9 @@ pub struct Contact {
 }
 
 /// A number and its error.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Judged {
     /// The number.
     pub value: f64,
@@ -343,8 +362,9 @@ pub struct Judged {
 }
 
 /// A contact that loses energy: its force is gamma F(d) (1 + lambda d').
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ContactDamping {
     /// The damping, in units of time per radian.
     pub lambda: f64,
@@ -362,11 +382,12 @@ pub struct ContactDamping {
 }
 
 /// One law of the contact.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ContactLawRow {
     /// Its name, as in a problem file.
-    #[schemars(extend("enum" = ContactLaw::ALL.map(ContactLaw::name)))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ContactLaw::ALL.map(ContactLaw::name))))]
     pub law: String,
     /// Whether it applies.
     pub applies: bool,
@@ -384,8 +405,9 @@ pub struct ContactLawRow {
 }
 
 /// One number by each closed form and by Runge-Kutta; null for a reading that does not apply.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Quantity {
     /// By `phases`.
     pub paper: Option<f64>,
@@ -404,8 +426,9 @@ pub struct Quantity {
 }
 
 /// The closed forms beside the true motion.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "ImpactVerification")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "ImpactVerification"))]
 pub struct Verification {
     /// The size of the relative error up to which a verdict is `pass`.
     pub tolerance: f64,
@@ -418,13 +441,14 @@ pub struct Verification {
     /// What is said of `derived_phases`.
     pub derived: Option<Column>,
     /// The verdict on `phases`; where the paper's reading does not apply, on `derived_phases`.
-    #[schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name()]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name()])))]
     pub verdict: String,
 }
 
 /// The judgement of three phases.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Column {
     /// The jump of the velocity at either end of the contact, in radians per unit of time.
     pub velocity_jump: f64,
@@ -438,13 +462,14 @@ pub struct Column {
     /// true depth.
     pub max_deviation_of_shape: [f64; 3],
     /// Whether every quantity and every phase on its own clock is within the tolerance.
-    #[schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name()]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name()])))]
     pub verdict: String,
 }
 
 /// The line slope * x + constant that replaces (x - barrier)^(3/2), per unit of gamma.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Line {
     /// The slope.
     pub slope: f64,

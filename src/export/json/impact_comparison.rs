@@ -1,5 +1,7 @@
 //! Kind `impact-comparison`: every method on one impact.
 
+#[cfg(feature = "schema")]
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -10,11 +12,12 @@ use crate::solution::Degrees;
 use crate::verify::Verdict;
 
 /// Every method on one impact, beside Runge-Kutta on the equation as it stands. Units as in a document of kind `impact`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ImpactComparisonDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::ImpactComparison.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::ImpactComparison.schema())))]
     pub schema: String,
     /// The equation of motion that is judged, `... = 0`, its force on the barrier included.
     pub equation: String,
@@ -29,8 +32,9 @@ pub struct ImpactComparisonDocument {
 }
 
 /// The numbers of the true motion.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct TrueNumbers {
     /// The time from the release to the touch, in units of time.
     pub time_to_contact: f64,
@@ -45,8 +49,9 @@ pub struct TrueNumbers {
 }
 
 /// A row of the table.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "ImpactMethodRow")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "ImpactMethodRow"))]
 pub struct Row {
     /// The method, by its name on the command line; `paper` and `energy` are the paper's readings.
     pub method: String,
@@ -72,7 +77,7 @@ pub struct Row {
     /// of the contact as one of the true depth.
     pub max_deviation_by_phase: Option<[f64; 3]>,
     /// Whether every number and every phase is within the tolerance.
-    #[schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name(), null]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name(), null])))]
     pub verdict: Option<String>,
 }
 

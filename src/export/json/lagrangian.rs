@@ -1,5 +1,7 @@
 //! Kind `lagrangian`: equations of motion from energies.
 
+#[cfg(feature = "schema")]
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,11 +11,12 @@ use crate::mechanics::{Group, MechanismStudy, Mode, Place, RestStudy};
 
 /// A mechanism, its equations of motion by Lagrange, its places of rest and the dimensionless groups on which its motion depends.
 /// Formulas are text of the grammar; `q'` is the velocity of `q`. Numbers are in the units of the values that were given.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct LagrangianDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::Lagrangian.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Lagrangian.schema())))]
     pub schema: String,
     /// The generalised coordinates, in the order of the equations.
     pub coordinates: Vec<String>,
@@ -61,8 +64,9 @@ pub struct LagrangianDocument {
 }
 
 /// A dimensionless number.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "Group")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "Group"))]
 pub struct GroupDocument {
     /// Its name in `dimensionless`.
     pub name: String,
@@ -75,8 +79,9 @@ pub struct GroupDocument {
 }
 
 /// A place of rest.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "Equilibrium")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "Equilibrium"))]
 pub struct EquilibriumDocument {
     /// The place of each coordinate; null for one that may be anywhere.
     pub places: Map<Option<String>>,
@@ -88,8 +93,9 @@ pub struct EquilibriumDocument {
 }
 
 /// A mode.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "Mode")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "Mode"))]
 pub struct ModeDocument {
     /// Angular frequency; 0 where it does not swing.
     pub frequency: f64,
@@ -100,8 +106,9 @@ pub struct ModeDocument {
 }
 
 /// An equation of the paper.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "Finding")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "Finding"))]
 pub struct FindingDocument {
     /// Its number: `(1)`.
     pub equation: String,

@@ -1,5 +1,7 @@
 //! Kind `materials`: the same swing against barriers of several materials.
 
+#[cfg(feature = "schema")]
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -10,11 +12,12 @@ use crate::report::material_sentences;
 
 /// The same swing against barriers of several materials. Angles are in radians, time is in units of 1/omega of small swings,
 /// sqrt(L/g), energies in units of m g L, unless another unit is given.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct MaterialsDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::Materials.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Materials.schema())))]
     pub schema: String,
     /// The pendulum and the run.
     pub parameters: Parameters,
@@ -34,8 +37,9 @@ pub struct MaterialsDocument {
 }
 
 /// The pendulum and the run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "MaterialsParameters")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "MaterialsParameters"))]
 pub struct Parameters {
     /// Where the barriers stand.
     pub barrier: Barrier,
@@ -58,7 +62,7 @@ pub struct Parameters {
     /// How long the motions are followed, in units of time.
     pub duration: f64,
     /// How the motions were found: by `integration`, or as a `chain` of closed forms.
-    #[schemars(extend("enum" = ROUTES))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ROUTES)))]
     pub route: String,
     /// The relative tolerance of one step of the integrator.
     pub step_tolerance: f64,
@@ -67,8 +71,9 @@ pub struct Parameters {
 }
 
 /// A rest time, or why there is none.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct RestTime {
     /// The rest time, in units of time; null where there is none.
     pub rest_time: Option<f64>,
@@ -79,8 +84,9 @@ pub struct RestTime {
 }
 
 /// A material.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "MaterialRow")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "MaterialRow"))]
 pub struct Row {
     /// Its name.
     pub name: String,
@@ -107,8 +113,9 @@ pub struct Row {
 }
 
 /// The first contact of a barrier.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct FirstContact {
     /// The speed at the touch, in m/s.
     pub speed: f64,
@@ -125,8 +132,9 @@ pub struct FirstContact {
 }
 
 /// A stated yield limit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "MaterialYieldCheck")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "MaterialYieldCheck"))]
 pub struct YieldCheck {
     /// The body: `sphere` or `barrier`.
     pub body: String,
@@ -139,11 +147,12 @@ pub struct YieldCheck {
 }
 
 /// The materials under one form of the damping of the contact.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct HeldFixed {
     /// The form, by its key in a file.
-    #[schemars(extend("enum" = ContactDamping::FORMS.map(Parameter::name)))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ContactDamping::FORMS.map(Parameter::name))))]
     pub form: String,
     /// Its number, the same for every material, in `unit`.
     pub value: f64,

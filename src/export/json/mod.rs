@@ -18,6 +18,8 @@ pub mod certificate;
 pub mod comparison;
 pub mod damped_certificate;
 pub mod friction;
+#[cfg(feature = "schema")]
+mod generated_schema;
 pub mod impact;
 pub mod impact_comparison;
 pub mod lagrangian;
@@ -62,7 +64,7 @@ pub use sweep::{SweepDocument, sweep};
 
 use crate::impact::Phase;
 use crate::solution::Solution;
-use schema::{check_kind, methods};
+use schema::check_kind;
 
 /// Why a document cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -1,5 +1,7 @@
 //! Kind `motion`: any equation or mechanism followed from its start.
 
+#[cfg(feature = "schema")]
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -11,11 +13,12 @@ use crate::system::{End, Integrator};
 use crate::trajectory::{Course, Crossing, Section, in_words};
 
 /// A motion in numbers, of an equation of motion or of a mechanism of several coordinates. Units are those of the values given.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct MotionDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::Motion.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Motion.schema())))]
     pub schema: String,
     /// The coordinates.
     pub coordinates: Vec<String>,
@@ -51,8 +54,9 @@ pub struct MotionDocument {
 }
 
 /// A state.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct MotionSample {
     /// The time.
     pub t: f64,
@@ -61,8 +65,9 @@ pub struct MotionSample {
 }
 
 /// Poincare's section.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "Section")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "Section"))]
 pub struct SectionDocument {
     /// The time between two states, a formula; null where it is the zeros of `rising` that count.
     pub every: Option<String>,
@@ -77,8 +82,9 @@ pub struct SectionDocument {
 }
 
 /// h = sum q' dL/dq' - L, the energy where nothing depends on the time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct EnergyAccount {
     /// At the start.
     pub start: f64,
@@ -183,11 +189,12 @@ fn section_document(
 }
 
 /// Many motions of one equation or mechanism, over every combination of the values of some parameters or starts.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct MotionSweepDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::MotionSweep.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::MotionSweep.schema())))]
     pub schema: String,
     /// The coordinates.
     pub coordinates: Vec<String>,
@@ -208,8 +215,9 @@ pub struct MotionSweepDocument {
 }
 
 /// One of many motions.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "SweptMotion")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SweptMotion"))]
 pub struct SweptMotionDocument {
     /// The values of what is varied.
     pub values: Map<f64>,

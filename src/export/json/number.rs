@@ -2,6 +2,7 @@
 
 use indexmap::IndexMap;
 use num_traits::Zero;
+#[cfg(feature = "schema")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -22,8 +23,9 @@ pub(super) fn is_nothing(count: &usize) -> bool {
 }
 
 /// An exact constant beside its decimal value.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Constant {
     /// The exact value as text: a fraction such as `-1/8`, or an expression such as `pi/3`.
     pub exact: String,
@@ -32,16 +34,18 @@ pub struct Constant {
 }
 
 /// A polynomial: the sum of its terms, lowest order in the small parameters first; zero where there is none.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Polynomial {
     /// The terms that are added up.
     pub terms: Vec<Term>,
 }
 
 /// A term: its coefficient times a product of powers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Term {
     /// The power of each symbol in it, negative ones too; `verification.values` has the value of every symbol.
     pub monomial: Map<i32>,

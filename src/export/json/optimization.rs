@@ -3,6 +3,8 @@
 //! The first line of a record says what was asked, every other one is a run. A line is written as a whole when its run has ended, so that of
 //! a process that is killed at most the last line is incomplete; it is left out where the record is read.
 
+#[cfg(feature = "schema")]
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -17,11 +19,12 @@ use crate::report::optimization_sentences;
 
 /// A search for the best damper. Angles are in radians, everything else in SI units, unless another unit is given; units of time are 1/omega
 /// of small swings, sqrt(L/g).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct OptimizationDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::Optimization.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Optimization.schema())))]
     pub schema: String,
     /// What was asked.
     pub asked: Asked,
@@ -44,11 +47,12 @@ pub struct OptimizationDocument {
 }
 
 /// What was asked.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Asked {
     /// What is to be small, by its key in a file.
-    #[schemars(extend("items" = {"enum": Objective::ALL.map(Objective::name)}))]
+    #[cfg_attr(feature = "schema", schemars(extend("items" = {"enum": Objective::ALL.map(Objective::name)})))]
     pub objectives: Vec<String>,
     /// What varies, in the order in which points have it.
     pub variables: Vec<Variable>,
@@ -87,8 +91,9 @@ pub struct Asked {
 }
 
 /// A number of the design that varies.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "SearchVariable")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchVariable"))]
 pub struct Variable {
     /// Its key in a file.
     pub name: String,
@@ -101,8 +106,9 @@ pub struct Variable {
 }
 
 /// A material that is tried.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "SearchMaterial")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchMaterial"))]
 pub struct Material {
     /// Its name.
     pub name: String,
@@ -115,11 +121,12 @@ pub struct Material {
 }
 
 /// A damping of the contact in the form in which it is given.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ContactForm {
     /// The form, by its key in a file.
-    #[schemars(extend("enum" = ContactDamping::FORMS.map(Parameter::name)))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ContactDamping::FORMS.map(Parameter::name))))]
     pub form: String,
     /// Its number, in the unit of that key.
     pub value: f64,
@@ -131,8 +138,9 @@ pub struct ContactForm {
 }
 
 /// What must not be larger.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "SearchLimit")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchLimit"))]
 pub struct Limit {
     /// What, by its name as an objective.
     pub objective: String,
@@ -143,8 +151,9 @@ pub struct Limit {
 }
 
 /// What is held fixed; null where it varies or is not given.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "SearchHeldFixed")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchHeldFixed"))]
 pub struct HeldFixed {
     /// The release from rest, in radians.
     pub amplitude: f64,
@@ -165,7 +174,7 @@ pub struct HeldFixed {
     /// Its torque, in N m; null where alpha is given.
     pub torque: Option<f64>,
     /// The law of that friction.
-    #[schemars(extend("enum" = ["exact", "arctangent"]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ["exact", "arctangent"])))]
     pub friction: String,
     /// The mass, in kg.
     pub mass: Option<f64>,
@@ -180,8 +189,9 @@ pub struct HeldFixed {
 }
 
 /// The genetic algorithm; with several objectives NSGA-II, which has only population, generations and budget of it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Genetic {
     /// Individuals.
     pub population: usize,
@@ -190,22 +200,22 @@ pub struct Genetic {
     /// The part of the others that crossover makes.
     pub crossover_fraction: f64,
     /// How genes are written.
-    #[schemars(extend("enum" = ["real", "bits"]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ["real", "bits"])))]
     pub coding: String,
     /// Bits of a number; null where genes are numbers.
     pub bits: Option<u32>,
     /// How two parents make a child.
-    #[schemars(extend("enum" = ["heuristic", "scattered", "one-point"]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ["heuristic", "scattered", "one-point"])))]
     pub crossover: String,
     /// How far beyond the better parent, in parts of the way to it; null for other crossovers.
     pub crossover_ratio: Option<f64>,
     /// How one parent makes a child.
-    #[schemars(extend("enum" = ["adaptive-feasible", "bit-flip"]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ["adaptive-feasible", "bit-flip"])))]
     pub mutation: String,
     /// The probability of a bit to be turned over; null for the other mutation.
     pub mutation_rate: Option<f64>,
     /// What a broken constraint costs.
-    #[schemars(extend("enum" = ["death", "feasible-first", "augmented-lagrangian"]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ["death", "feasible-first", "augmented-lagrangian"])))]
     pub penalty: String,
     /// The weight that an augmented Lagrangian begins with; null for other penalties.
     pub initial_penalty: Option<f64>,
@@ -220,16 +230,17 @@ pub struct Genetic {
     /// Below this change of it a run ends.
     pub function_tolerance: f64,
     /// How that is measured.
-    #[schemars(extend("enum" = ["average", "weighted"]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ["average", "weighted"])))]
     pub stall_test: String,
     /// The most evaluations of one run; null where there is no such limit.
     pub budget: Option<usize>,
 }
 
 /// A run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(deny_unknown_fields, rename = "SearchRun")]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchRun"))]
 pub struct Run {
     /// Its number, from 0.
     pub number: usize,
@@ -245,14 +256,15 @@ pub struct Run {
     /// Those that were integrated: they have no closed form, or would be the best if they keep the constraints.
     pub integrated: usize,
     /// Why it ended.
-    #[schemars(extend("enum" = Stop::ALL.map(Stop::name)))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = Stop::ALL.map(Stop::name))))]
     pub stop: String,
 }
 
 /// A design that a run found, as the search has it: by closed forms, by integration where there are none.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Found {
     /// The values of the variables in their order, then the number of the material.
     pub point: Vec<f64>,
@@ -261,8 +273,9 @@ pub struct Found {
 }
 
 /// The best values of the runs of one search.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Search {
     /// Which: the genetic algorithm first.
     pub name: String,
@@ -283,8 +296,9 @@ pub struct Search {
 }
 
 /// A design that was judged again.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Finalist {
     /// The number of the run that found it.
     pub run: usize,
@@ -299,8 +313,9 @@ pub struct Finalist {
 }
 
 /// A design that was followed until it rests.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Design {
     /// The values of the variables by their names.
     pub variables: Map<f64>,
@@ -329,8 +344,9 @@ pub struct Design {
 }
 
 /// A main mass on spring and dashpot that carries the pendulum.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "MainMass")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "MainMass"))]
 pub struct MainMassDocument {
     /// Its mass without the pendulum, in kg.
     pub mass: f64,
@@ -345,8 +361,9 @@ pub struct MainMassDocument {
 }
 
 /// What decides the best design.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Decision {
     /// The variables, each moved alone.
     pub sensitivities: Vec<Sensitivity>,
@@ -365,8 +382,9 @@ pub struct Decision {
 }
 
 /// A variable moved alone.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Sensitivity {
     /// Its key in a file.
     pub name: String,
@@ -379,13 +397,14 @@ pub struct Sensitivity {
     /// Least and greatest objective over the whole range, constraints aside; null where it does not rest somewhere.
     pub range: Option<[f64; 2]>,
     /// What follows: every value is as good, a limit decides, a constraint does, or something is lost on either side.
-    #[schemars(extend("enum" = Role::ALL.map(Role::name)))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = Role::ALL.map(Role::name))))]
     pub role: String,
 }
 
 /// What the unit of the rest time does.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Unit {
     /// The limits of the length, in m.
     pub lengths: [f64; 2],

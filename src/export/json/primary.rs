@@ -1,5 +1,7 @@
 //! Kinds `primary` and `primary-sweep`: a main mass that carries the pendulum and its barriers.
 
+#[cfg(feature = "schema")]
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -11,11 +13,12 @@ use crate::report::{PrimaryReport, PrimarySweepReport};
 
 /// A main mass on spring and dashpot with a pendulum and its barriers. Time is in units of 1/omega, omega^2 = g/L, displacements of the
 /// main mass are over L, energies in units of m g L, angles in radians.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct PrimaryDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::Primary.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Primary.schema())))]
     pub schema: String,
     /// The numbers of both bodies.
     pub parameters: PrimaryParameters,
@@ -48,8 +51,9 @@ pub struct PrimaryDocument {
 }
 
 /// The numbers of main mass and pendulum, dimensionless.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct PrimaryParameters {
     /// R = M/m.
     pub mass: f64,
@@ -78,8 +82,9 @@ pub struct PrimaryParameters {
 }
 
 /// Both bodies at a time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct PrimarySample {
     /// The time.
     pub t: f64,
@@ -94,8 +99,9 @@ pub struct PrimarySample {
 }
 
 /// An impact.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "PrimaryImpact")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "PrimaryImpact"))]
 pub struct PrimaryImpactDocument {
     /// The barrier: `left` or `right`.
     pub side: String,
@@ -114,8 +120,9 @@ pub struct PrimaryImpactDocument {
 }
 
 /// The account of the energy.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct PrimaryEnergyDocument {
     /// At the start.
     pub start: f64,
@@ -136,8 +143,9 @@ pub struct PrimaryEnergyDocument {
 }
 
 /// A main mass alone, in closed form.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "Alone")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "Alone"))]
 pub struct AloneDocument {
     /// Its mass, in units of the mass of the pendulum.
     pub mass: f64,
@@ -150,11 +158,12 @@ pub struct AloneDocument {
 }
 
 /// Many runs of a main mass with its pendulum, over every combination of the values of some parameters. Units as in kind `primary`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct PrimarySweepDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::PrimarySweep.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::PrimarySweep.schema())))]
     pub schema: String,
     /// The parameters that are varied, in SI units unless they are numbers of equation (7); the last varies fastest.
     pub axes: Vec<Axis>,
@@ -167,8 +176,9 @@ pub struct PrimarySweepDocument {
 }
 
 /// One run of a main mass.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct PrimarySweepRow {
     /// The values of the parameters, in the order of the axes.
     pub values: Vec<f64>,

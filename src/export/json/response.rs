@@ -1,5 +1,7 @@
 //! Kind `response`: all steady states of an oscillator, driven or self-excited, with their stability.
 
+#[cfg(feature = "schema")]
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -12,11 +14,12 @@ use crate::response::{self, Response};
 use crate::verify::Verdict;
 
 /// Steady states of an oscillator, driven or self-excited, as a parameter varies. Units are those of the equation and the values given.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ResponseDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::Response.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Response.schema())))]
     pub schema: String,
     /// The equation of motion.
     pub equation: String,
@@ -65,8 +68,9 @@ pub struct ResponseDocument {
 }
 
 /// A steady state.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ResponsePoint {
     /// The value of the parameter that varies.
     pub parameter: f64,
@@ -91,8 +95,9 @@ pub struct ResponsePoint {
 }
 
 /// Steady motions by slow equations.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "SlowResponse")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SlowResponse"))]
 pub struct SlowDocument {
     /// The method: `multiple-scales`.
     pub method: String,
@@ -115,13 +120,14 @@ pub struct SlowDocument {
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub spurious: usize,
     /// Whether the error is within the tolerance and no more than one point in twenty is missing.
-    #[schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name()]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name()])))]
     pub verdict: String,
 }
 
 /// A steady motion by slow equations.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct SlowPoint {
     /// The value of the parameter that varies.
     pub parameter: f64,
@@ -167,12 +173,13 @@ fn slow(slow: &SlowResponse) -> SlowDocument {
 }
 
 /// A place where a branch changes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ResponseBifurcation {
     /// What happens: the branch turns back, another one crosses, motions of twice the period come off, a second frequency comes in, a
     /// self-excited motion is born from rest, motions of every amplitude at one value of the parameter.
-    #[schemars(extend("enum" = KINDS))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = KINDS)))]
     pub kind: String,
     /// The branch, counted from 0.
     pub branch: usize,
@@ -197,8 +204,9 @@ const KINDS: [&str; 6] = [
 ];
 
 /// A free motion without damping.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct BackbonePoint {
     /// The value of the parameter at which it has the frequency of the drive over `periods`.
     pub parameter: f64,
@@ -207,8 +215,9 @@ pub struct BackbonePoint {
 }
 
 /// A simulation that has settled.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct SimulatedPoint {
     /// The value of the parameter that varies.
     pub parameter: f64,
@@ -223,8 +232,9 @@ pub struct SimulatedPoint {
 }
 
 /// Folds of the balance alone.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "ResponseRipple")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "ResponseRipple"))]
 pub struct RippleDocument {
     /// How many they are.
     pub folds: usize,
@@ -233,8 +243,9 @@ pub struct RippleDocument {
 }
 
 /// A simulation that has settled elsewhere.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ElsewherePoint {
     /// The value of the parameter that varies.
     pub parameter: f64,
@@ -244,8 +255,9 @@ pub struct ElsewherePoint {
 }
 
 /// How far the branches are from true motions.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ResponseVerification {
     /// The largest error of all points and simulations; null where no true motion was found.
     pub error: Option<f64>,
@@ -254,7 +266,7 @@ pub struct ResponseVerification {
     /// Points beside which shooting found no true motion.
     pub unjudged: usize,
     /// The verdict.
-    #[schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name()]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name()])))]
     pub verdict: String,
 }
 

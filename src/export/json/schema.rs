@@ -1,18 +1,8 @@
-//! The kinds of documents and the JSON Schema of each, from the types that write and read them.
+//! The kinds of documents and the JSON Schema of each.
 
-use std::borrow::Cow;
-
-use schemars::generate::SchemaSettings;
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::Value;
 
-use super::{
-    AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument, DampedCertificateDocument,
-    FrictionDocument, ImpactComparisonDocument, ImpactDocument, JsonError, LagrangianDocument, MaterialsDocument,
-    MotionDocument, MotionSweepDocument, OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
-    SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument, unexpected,
-};
-use crate::solution::Method;
+use super::{JsonError, unexpected};
 
 /// A kind of document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -116,96 +106,40 @@ impl Kind {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
-    /// The JSON Schema, draft 2020-12, of documents of this kind: every key with its meaning, no other key allowed.
+    /// The JSON Schema, draft 2020-12, of documents of this kind: every key with its meaning, no other key allowed. It is kept as a file
+    /// in `src/export/json/schemas/`, which a test holds to the types that write and read the documents.
     ///
     /// ```
     /// use lindstedt::export::json::Kind;
     ///
     /// let kind = Kind::from_name("impact").ok_or("no such kind")?;
-    /// assert_eq!(kind.json_schema()["title"], "lindstedt/impact/1");
+    /// let schema: serde_json::Value = serde_json::from_str(kind.json_schema())?;
+    /// assert_eq!(schema["title"], "lindstedt/impact/1");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn json_schema(self) -> Value {
-        let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
-        let mut schema = match self {
-            Self::Solution => generator.into_root_schema_for::<SolutionDocument>(),
-            Self::Comparison => generator.into_root_schema_for::<ComparisonDocument>(),
-            Self::Impact => generator.into_root_schema_for::<ImpactDocument>(),
-            Self::ImpactComparison => generator.into_root_schema_for::<ImpactComparisonDocument>(),
-            Self::Simulation => generator.into_root_schema_for::<SimulationDocument>(),
-            Self::Motion => generator.into_root_schema_for::<MotionDocument>(),
-            Self::MotionSweep => generator.into_root_schema_for::<MotionSweepDocument>(),
-            Self::Primary => generator.into_root_schema_for::<PrimaryDocument>(),
-            Self::PrimarySweep => generator.into_root_schema_for::<PrimarySweepDocument>(),
-            Self::Sweep => generator.into_root_schema_for::<SweepDocument>(),
-            Self::Response => generator.into_root_schema_for::<ResponseDocument>(),
-            Self::Friction => generator.into_root_schema_for::<FrictionDocument>(),
-            Self::Lagrangian => generator.into_root_schema_for::<LagrangianDocument>(),
-            Self::Materials => generator.into_root_schema_for::<MaterialsDocument>(),
-            Self::Optimization => generator.into_root_schema_for::<OptimizationDocument>(),
-            Self::Stability => generator.into_root_schema_for::<StabilityDocument>(),
-            Self::Audit => generator.into_root_schema_for::<AuditDocument>(),
-            Self::Catalog => generator.into_root_schema_for::<CatalogDocument>(),
-            Self::Certificate => generator.into_root_schema_for::<EitherCertificate>(),
-        };
-        schema.insert("title".to_owned(), self.schema().into());
-        let mut schema = head_first(schema.to_value());
-        in_one_line(&mut schema);
-        schema
-    }
-}
-
-/// A certificate of a conservative motion or of a limit cycle, told apart by `ode`.
-struct EitherCertificate;
-
-impl JsonSchema for EitherCertificate {
-    fn schema_name() -> Cow<'static, str> {
-        "EitherCertificate".into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let kinds = [
-            generator.subschema_for::<CertificateDocument>(),
-            generator.subschema_for::<DampedCertificateDocument>(),
-        ];
-        json_schema!({
-            "description": "Numbers from which a motion can be proved, and how far a formula for it is off: a conservative motion, or a limit cycle.",
-            "anyOf": kinds,
-        })
-    }
-}
-
-/// What a reader looks for first stands first.
-fn head_first(schema: Value) -> Value {
-    let Value::Object(mut rest) = schema else {
-        return schema;
-    };
-    let head = ["$schema", "title", "description"];
-    let mut ordered: serde_json::Map<String, Value> =
-        head.iter().filter_map(|key| rest.shift_remove_entry(*key)).collect();
-    ordered.extend(rest);
-    ordered.into()
-}
-
-/// Descriptions are wrapped where they are written, in lines of the source.
-fn in_one_line(schema: &mut Value) {
-    match schema {
-        Value::Object(map) => {
-            for (key, entry) in map.iter_mut() {
-                match entry {
-                    Value::String(text) if key == "description" => *text = text.replace('\n', " "),
-                    _ => in_one_line(entry),
-                }
-            }
+    pub const fn json_schema(self) -> &'static str {
+        match self {
+            Self::Solution => include_str!("schemas/solution.json"),
+            Self::Comparison => include_str!("schemas/comparison.json"),
+            Self::Impact => include_str!("schemas/impact.json"),
+            Self::ImpactComparison => include_str!("schemas/impact-comparison.json"),
+            Self::Simulation => include_str!("schemas/simulation.json"),
+            Self::Motion => include_str!("schemas/motion.json"),
+            Self::MotionSweep => include_str!("schemas/motion-sweep.json"),
+            Self::Primary => include_str!("schemas/primary.json"),
+            Self::PrimarySweep => include_str!("schemas/primary-sweep.json"),
+            Self::Sweep => include_str!("schemas/sweep.json"),
+            Self::Response => include_str!("schemas/response.json"),
+            Self::Friction => include_str!("schemas/friction.json"),
+            Self::Lagrangian => include_str!("schemas/lagrangian.json"),
+            Self::Materials => include_str!("schemas/materials.json"),
+            Self::Optimization => include_str!("schemas/optimization.json"),
+            Self::Stability => include_str!("schemas/stability.json"),
+            Self::Audit => include_str!("schemas/audit.json"),
+            Self::Catalog => include_str!("schemas/catalog.json"),
+            Self::Certificate => include_str!("schemas/certificate.json"),
         }
-        Value::Array(list) => list.iter_mut().for_each(in_one_line),
-        _ => {}
     }
-}
-
-/// The schema of the name of a method.
-pub(super) fn methods(_: &mut SchemaGenerator) -> Schema {
-    json_schema!({ "type": "string", "enum": Method::ALL.map(Method::name) })
 }
 
 /// Refuses a document of another kind.

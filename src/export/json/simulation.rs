@@ -1,5 +1,7 @@
 //! Kind `simulation`: one run of equation (7).
 
+#[cfg(feature = "schema")]
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,11 +11,12 @@ use crate::impact::{self, ClosedForm, Friction, Integrator, Piece, Regime, Side}
 
 /// One run of the paper's equation (7), event by event. Angles are in radians, time is in units of 1/omega of small swings,
 /// sqrt(L/g), energies in units of m g L.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct SimulationDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::Simulation.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Simulation.schema())))]
     pub schema: String,
     /// The numbers of the problem.
     pub parameters: Parameters,
@@ -22,10 +25,10 @@ pub struct SimulationDocument {
     /// The unit of time sqrt(L/g), in seconds; null where mass, length and gravity are not known.
     pub time_unit: Option<f64>,
     /// The integrator of the run: `taylor` with the contact in a variable in which it is analytic, or `runge-kutta` phase by phase.
-    #[schemars(extend("enum" = INTEGRATORS.map(integrator)))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = INTEGRATORS.map(integrator))))]
     pub integrator: String,
     /// How the motion was found: by `integration`, or as a `chain` of closed forms.
-    #[schemars(extend("enum" = ROUTES))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ROUTES)))]
     pub route: String,
     /// The phases of a chain, in time; null where the motion was integrated.
     pub phases: Option<Vec<ChainPhase>>,
@@ -68,8 +71,9 @@ pub struct SimulationDocument {
 }
 
 /// Rest times of the same swing, in units of time; null where it does not come to rest in four times the duration of the run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Baseline {
     /// Without a barrier.
     pub no_barrier: Option<f64>,
@@ -82,8 +86,9 @@ pub struct Baseline {
 }
 
 /// By how much sooner a swing cut at the barrier rests under viscous damping: ln(first_swing/at_rest)/(2 zeta).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Geometry {
     /// The action of the first swing without a barrier over that of the swing cut at it.
     pub first_swing: f64,
@@ -94,8 +99,9 @@ pub struct Geometry {
 }
 
 /// The numbers of a run: dimensionless unless another unit is given.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Parameters {
     /// Where the barriers stand.
     pub barrier: Barrier,
@@ -116,7 +122,7 @@ pub struct Parameters {
     /// The torque of dry friction, in units of m g L.
     pub alpha: f64,
     /// The law of dry friction: `exact` with sticking, or `arctangent`.
-    #[schemars(extend("enum" = [friction(Friction::Exact), friction(Friction::Arctangent)]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = [friction(Friction::Exact), friction(Friction::Arctangent)])))]
     pub friction: String,
     /// The amplitude of the moving pivot: (A_e/L) (Omega/omega)^2.
     pub beta: f64,
@@ -131,8 +137,9 @@ pub struct Parameters {
 }
 
 /// What damps, each damping in every form.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Dissipation {
     /// The damping of the contact.
     pub contact: ContactDissipation,
@@ -143,11 +150,12 @@ pub struct Dissipation {
 }
 
 /// The damping of a contact, in every form.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ContactDissipation {
     /// The form in which it is given and held fixed, by its key in a file.
-    #[schemars(extend("enum" = impact::ContactDamping::FORMS.map(impact::Parameter::name)))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = impact::ContactDamping::FORMS.map(impact::Parameter::name))))]
     pub held_fixed: String,
     /// mu of equation (7), dimensionless.
     pub mu: f64,
@@ -171,11 +179,12 @@ pub struct ContactDissipation {
 }
 
 /// A viscous damping, in every form.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ViscousDissipation {
     /// The form in which it is given and held fixed, by its key in a file.
-    #[schemars(extend("enum" = [impact::Parameter::Zeta.name(), impact::Parameter::Viscous.name()]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = [impact::Parameter::Zeta.name(), impact::Parameter::Viscous.name()])))]
     pub held_fixed: String,
     /// The fraction zeta of the critical damping.
     pub zeta: f64,
@@ -184,11 +193,12 @@ pub struct ViscousDissipation {
 }
 
 /// A dry friction, in every form.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct FrictionDissipation {
     /// The form in which it is given and held fixed, by its key in a file.
-    #[schemars(extend("enum" = [impact::Parameter::Alpha.name(), impact::Parameter::Torque.name()]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = [impact::Parameter::Alpha.name(), impact::Parameter::Torque.name()])))]
     pub held_fixed: String,
     /// The torque in units of m g L: the coefficient alpha of equation (7).
     pub alpha: f64,
@@ -229,8 +239,9 @@ impl From<&impact::Dissipation> for Dissipation {
 }
 
 /// The places of the barriers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Barrier {
     /// The left one, in radians; null where there is none.
     pub left: Option<f64>,
@@ -239,8 +250,9 @@ pub struct Barrier {
 }
 
 /// A state at the end of a run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct State {
     /// The time, in units of time.
     pub t: f64,
@@ -251,8 +263,9 @@ pub struct State {
 }
 
 /// A state that was asked for.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Sample {
     /// The time, in units of time.
     pub t: f64,
@@ -263,8 +276,9 @@ pub struct Sample {
 }
 
 /// One contact with a barrier.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Impact {
     /// When the barrier is touched, in units of time.
     pub entry_time: f64,
@@ -281,15 +295,16 @@ pub struct Impact {
     /// The energy that the motion has lost between touch and release, in units of m g L; null where the run ended before.
     pub energy_lost: Option<f64>,
     /// Which barrier it is.
-    #[schemars(extend("enum" = [Side::Left.name(), Side::Right.name()]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = [Side::Left.name(), Side::Right.name()])))]
     pub side: String,
     /// How far it is from the same contact by integration; null unless it is of a chain that was judged, and the integration has it.
     pub error: Option<ImpactError>,
 }
 
 /// How far a contact of a chain is from the same one by integration.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ImpactError {
     /// The difference of the times of touch, in units of time.
     pub entry_time: f64,
@@ -304,11 +319,12 @@ pub struct ImpactError {
 }
 
 /// A phase of a chain: a stretch of time with one formula.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ChainPhase {
     /// What happens: `swing`, `contact`, `rest` where dry friction holds the pendulum, or `integrated` where there is no formula.
-    #[schemars(extend("enum" = ["swing", "contact", "rest", "integrated"]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ["swing", "contact", "rest", "integrated"])))]
     pub name: String,
     /// When it begins, in units of time.
     pub start: f64,
@@ -323,8 +339,9 @@ pub struct ChainPhase {
 }
 
 /// x(t) = 2 sign asin(modulus exp(-rate t) sn(speed t + phase, parameter)), sn of Jacobi with the parameter k^2.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct SwingForm {
     /// 1 or -1.
     pub sign: f64,
@@ -341,8 +358,9 @@ pub struct SwingForm {
 }
 
 /// x(t) = barrier + the sum over j from 1 of sines_j sin(j pi t/duration).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ContactForm {
     /// Where the barrier stands, in radians.
     pub barrier: f64,
@@ -353,8 +371,9 @@ pub struct ContactForm {
 }
 
 /// Energies and works over the run, in units of m g L.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Energy {
     /// The energy at the start, in units of m g L.
     pub start: f64,
@@ -371,11 +390,12 @@ pub struct Energy {
 }
 
 /// The same run by the other integrator.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Judge {
     /// The integrator.
-    #[schemars(extend("enum" = INTEGRATORS.map(integrator)))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = INTEGRATORS.map(integrator))))]
     pub integrator: String,
     /// The number of contacts it finds.
     pub impacts: usize,
@@ -390,8 +410,9 @@ pub struct Judge {
 }
 
 /// The largest differences of two motions at the same times.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Difference {
     /// Of the displacements, in radians.
     pub x: f64,

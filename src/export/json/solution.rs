@@ -1,12 +1,13 @@
 //! Kind `solution`: a derived law and motion; what the judge says of it is in `verification.rs`.
 
 use num_traits::Zero;
+#[cfg(feature = "schema")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::number::expression;
 use super::verification::{Verification, verification as judged};
-use super::{Constant, JsonError, Kind, Map, Polynomial, check_kind, methods, unexpected};
+use super::{Constant, JsonError, Kind, Map, Polynomial, check_kind, unexpected};
 use crate::derivation::Line;
 use crate::exact::{self, Monomial, POLYNOMIALS, Polynomials};
 use crate::expr::parse_equation;
@@ -21,16 +22,17 @@ use crate::verify;
 
 /// A formula for the frequency and the motion of an oscillator. Of the laws of the frequency take the first that is not null:
 /// `frequency_squared`, `relation`, `closed_form`, `frequency`, `by_quadrature`, `system`; that is the one that is judged.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct SolutionDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::Solution.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Solution.schema())))]
     pub schema: String,
     /// The equation of motion as it was understood, `... = 0`; time is its own, so frequencies are in radians per unit of it.
     pub equation: String,
     /// The method that derived it, by its name on the command line.
-    #[schemars(schema_with = "methods")]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "super::generated_schema::methods"))]
     pub method: String,
     /// The highest power kept of the small parameter, inclusive; for a balance the number of harmonics, for iterations the passes.
     pub order: u32,
@@ -40,7 +42,7 @@ pub struct SolutionDocument {
     pub small_parameter: String,
     /// What the amplitude measures: `initial` is `A` = x(0) minus the equilibrium with x'(0) = 0, `first-harmonic` is `a`, the
     /// amplitude of the first harmonic. It has the unit of the coordinate.
-    #[schemars(extend("enum" = [AmplitudeConvention::Initial.name(), AmplitudeConvention::FirstHarmonic.name()]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = [AmplitudeConvention::Initial.name(), AmplitudeConvention::FirstHarmonic.name()])))]
     pub amplitude: String,
     /// The parameters of the equation, in alphabetical order.
     pub parameters: Vec<String>,
@@ -93,8 +95,9 @@ pub struct SolutionDocument {
 }
 
 /// The nearest singularity of a series, or a pair of conjugate ones, in the complex plane of its variable.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Convergence {
     /// What the series runs in: the powers of the small parameter and of the symbols that enter in step with it, multiplied.
     pub variable: Map<i32>,
@@ -114,8 +117,9 @@ pub struct Convergence {
 }
 
 /// A number that was estimated.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Estimate {
     /// All digits that the error leaves, as an exact fraction in text.
     pub exact: String,
@@ -179,8 +183,9 @@ impl Convergence {
 }
 
 /// Algebraic equations for omega and the coefficients of the motion.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct System {
     /// What is solved for: `omega` and the coefficients; `verification.values` has their values.
     pub unknowns: Vec<String>,
@@ -189,11 +194,12 @@ pub struct System {
 }
 
 /// A motion as a Fourier series with symbols in it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Displacement {
     /// The name of the angle, `theta`, or `phi` where the equation has a `theta` of its own: theta = omega t + `verification.phase`, in radians.
-    #[schemars(extend("pattern" = "^(theta|phi_*)$"))]
+    #[cfg_attr(feature = "schema", schemars(extend("pattern" = "^(theta|phi_*)$")))]
     pub variable: String,
     /// x = sum of cos * cos(harmonic theta) + sin * sin(harmonic theta), lowest harmonic first, the equilibrium in harmonic 0;
     /// empty where only `verification.motion` has the motion. Of a driven answer the part with the first harmonic: `response.motion` has
@@ -202,8 +208,9 @@ pub struct Displacement {
 }
 
 /// One harmonic of a motion with symbols in it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Harmonic {
     /// The multiple of theta, 0 for the mean.
     pub harmonic: usize,
@@ -214,8 +221,9 @@ pub struct Harmonic {
 }
 
 /// The limit cycle that is expanded, among those of its equation.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct LimitCycle {
     /// Its amplitude, as `amplitude` of the solution says, in the unit of the coordinate; to leading order where the motion is left out.
     pub amplitude: Polynomial,
@@ -228,8 +236,9 @@ pub struct LimitCycle {
 }
 
 /// A limit cycle to leading order.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Cycle {
     /// Its amplitude where the small parameters vanish, in the unit of the coordinate.
     pub amplitude: Constant,
@@ -242,8 +251,9 @@ pub struct Cycle {
 
 /// The slow equations of amplitude and phase, in time derivatives: the motion is `displacement` with theta = phase, or for a driven
 /// motion theta = (times_driving * driving_frequency * t - phase)/times_linear.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Modulation {
     /// The symbol of the amplitude, in the unit of the coordinate.
     pub amplitude: String,
@@ -269,8 +279,9 @@ pub struct Modulation {
 }
 
 /// A driving frequency near a multiple of the linear one: times_driving * driving_frequency = times_linear * omega0 + detuning.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Resonance {
     /// The driving frequency, a symbol or a number.
     pub driving_frequency: String,
@@ -286,8 +297,9 @@ pub struct Resonance {
 
 /// What is known of the steady motions of a driven equation. All formulas are in the amplitude and the detuning of `modulation`, the
 /// parameters and the definitions.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Response {
     /// x(t), an expression in t, the amplitude and the phase of `modulation`.
     pub motion: String,
@@ -315,8 +327,9 @@ pub struct Response {
 }
 
 /// The frequency-response equation of a force that is no polynomial, expressions in the amplitude and the detuning.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ClosedRelation {
     /// Zero at every steady motion.
     pub relation: String,
@@ -327,8 +340,9 @@ pub struct ClosedRelation {
 }
 
 /// detuning = centre + sqrt(width_squared) and centre - sqrt(width_squared).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Branches {
     /// The middle of both branches, the backbone.
     pub centre: Polynomial,
@@ -337,8 +351,9 @@ pub struct Branches {
 }
 
 /// Amplitude and phase at t = 0 of a motion with x = A from the equilibrium and x' = 0 there.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Release {
     /// The amplitude, an expression.
     pub amplitude: String,
@@ -347,8 +362,9 @@ pub struct Release {
 }
 
 /// A motion from its start in closed form.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Transient {
     /// The symbol of the amplitude at t = 0: A, or one of `definitions`.
     pub start: String,

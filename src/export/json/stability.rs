@@ -1,5 +1,7 @@
 //! Kind `stability`: transition curves of a linear equation with periodic coefficients.
 
+#[cfg(feature = "schema")]
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,11 +11,12 @@ use crate::expr::Expr;
 use crate::report::StabilityReport;
 
 /// The curves on which a linear equation with periodic coefficients changes between stable and unstable.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct StabilityDocument {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::Stability.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Stability.schema())))]
     pub schema: String,
     /// The equation as it was understood.
     pub equation: String,
@@ -36,8 +39,9 @@ pub struct StabilityDocument {
 }
 
 /// A transition curve: `curve + sign*sqrt(under_root)`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "TransitionCurve")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "TransitionCurve"))]
 pub struct CurveDocument {
     /// `a1`, `b1` for motions of cosines and of sines; `lower1`, `upper1` where they are of both.
     pub name: String,
@@ -54,8 +58,9 @@ pub struct CurveDocument {
 }
 
 /// The curves at values.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct StabilityVerification {
     /// The values.
     pub at: Map<Constant>,
@@ -68,8 +73,9 @@ pub struct StabilityVerification {
 }
 
 /// A curve at the values.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields, rename = "JudgedCurve")]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "JudgedCurve"))]
 pub struct JudgedCurveDocument {
     /// Its name.
     pub name: String,

@@ -2,6 +2,8 @@
 
 use std::io;
 
+#[cfg(feature = "schema")]
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize, Serializer};
 
@@ -12,11 +14,12 @@ use crate::impact::sweep::{Spacing, Summary};
 
 /// Many runs of the paper's equation (7), over every combination of the values of some parameters; units as in a document of kind
 /// `simulation`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct SweepDocument<Rows = Vec<Row>> {
     /// The kind of document.
-    #[schemars(extend("const" = Kind::Sweep.schema()))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Sweep.schema())))]
     pub schema: String,
     /// The parameters that are varied; the last varies fastest.
     pub axes: Vec<Axis>,
@@ -27,8 +30,9 @@ pub struct SweepDocument<Rows = Vec<Row>> {
 }
 
 /// A parameter and its values.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Axis {
     /// The parameter, by its name in problem files, whose unit its values have.
     pub name: String,
@@ -39,7 +43,7 @@ pub struct Axis {
     /// The number of values.
     pub count: usize,
     /// How the values follow each other: `linear` by equal steps, `logarithmic` by equal ratios, `list` as they were given.
-    #[schemars(extend("enum" = Spacing::ALL.map(Spacing::name)))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = Spacing::ALL.map(Spacing::name))))]
     pub spacing: String,
     /// The values, in order.
     pub values: Vec<f64>,
@@ -60,8 +64,9 @@ impl From<&crate::impact::sweep::Axis> for Axis {
 }
 
 /// What one number, text or truth value of a row means.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Column {
     /// Its name: that of a parameter, whose value stands in `values`, or the key of a row; `t`, `x` and `velocity` stand in
     /// `final_state`.
@@ -73,8 +78,9 @@ pub struct Column {
 }
 
 /// What is kept of one run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Row {
     /// The values of the parameters, in the order of the axes.
     pub values: Vec<f64>,

@@ -1,6 +1,8 @@
 //! What the judge says of a formula, inside the documents of kind `solution`: frequencies and errors at the values given, the steady or
 //! the followed motion, the range, the verdict.
 
+#[cfg(feature = "schema")]
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -14,8 +16,9 @@ use crate::values::Values;
 use crate::verify;
 
 /// A formula at given values, beside the true motion of the equation as it was typed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Verification {
     /// The values that were given.
     pub at: Map<Constant>,
@@ -29,7 +32,7 @@ pub struct Verification {
     pub relative_error: Option<f64>,
     /// What is judged: `omega^2`, of which the frequency is the root, or `omega`; of a driven motion the `amplitude` of the largest
     /// stable steady state, whose relative error is given.
-    #[schemars(extend("enum" = ["omega^2", "omega", "amplitude"]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = ["omega^2", "omega", "amplitude"])))]
     pub judged_on: String,
     /// The relative error of `frequency` where `frequency_squared` is judged; null where they do not stand side by side.
     pub error_of_omega: Option<f64>,
@@ -72,14 +75,15 @@ pub struct Verification {
     #[serde(default)]
     pub followed: Option<Followed>,
     /// Whether |relative_error| is within the tolerance, 0.01 unless another was given.
-    #[schemars(extend("enum" = [verify::Verdict::Pass.name(), verify::Verdict::Fail.name()]))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = [verify::Verdict::Pass.name(), verify::Verdict::Fail.name()])))]
     pub verdict: String,
 }
 
 /// A motion that is not periodic, followed from its release at rest at x = A. Frequencies are those of its crossings of the
 /// equilibrium: pi over the mean time between successive ones; `max_deviation` is over the whole time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Followed {
     /// How long it was followed, in the time of the equation.
     pub until: f64,
@@ -102,8 +106,9 @@ pub struct Followed {
 }
 
 /// A steady motion in numbers, by the slow equations and in truth.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct SteadyState {
     /// The amplitude by the slow equations, in the unit of the coordinate.
     pub amplitude: f64,
@@ -124,8 +129,9 @@ pub struct SteadyState {
 }
 
 /// One harmonic of a motion in numbers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct HarmonicValue {
     /// The multiple of theta, 0 for the mean.
     pub harmonic: usize,
@@ -136,8 +142,9 @@ pub struct HarmonicValue {
 }
 
 /// A place where the formula stops to hold, or another remark on its range.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Range {
     /// The range in words and numbers.
     pub text: String,

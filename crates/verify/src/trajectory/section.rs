@@ -10,7 +10,6 @@
 //!
 //! A motion that turns back where s is zero touches the section and does not cross it, on whichever side rounding leaves it there.
 
-use std::collections::BTreeMap;
 
 use super::{Trajectory, TrajectoryError};
 use crate::expr::Expr;
@@ -172,13 +171,10 @@ impl Trajectory {
     fn turns_on(&self, expression: &Expr, turns: Vec<f64>) -> Vec<[f64; 3]> {
         /// Of the largest value.
         const TOUCH: f64 = 1e-9;
-        let mut numbers: BTreeMap<Symbol, f64> = self.course.values.clone();
-        let mut value = |time: f64| {
-            let state = self.at(time)?;
-            numbers.insert(Symbol::new("t"), time);
-            numbers.extend(self.course.rates.states.iter().copied().zip(state));
-            expression.evaluate(&numbers).ok()
+        let Some(function) = self.compiled(expression) else {
+            return vec![];
         };
+        let value = |time: f64| Some(function(time, &self.at(time)?)).filter(|value| value.is_finite());
         let times = [0.0].into_iter().chain(turns).chain([self.end()]);
         let heights: Vec<(f64, f64)> = times.filter_map(|time| Some((time, value(time)?))).collect();
         let largest = heights.iter().fold(0.0_f64, |most, (_, height)| most.max(height.abs()));

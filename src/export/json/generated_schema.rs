@@ -1,0 +1,96 @@
+//! JSON Schemas made from the types that write and read the documents. Only the test that holds the files in `schemas/` to them needs this.
+
+use std::borrow::Cow;
+
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde_json::Value;
+
+use super::{AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument, DampedCertificateDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument, Kind, LagrangianDocument, MaterialsDocument, MotionDocument, MotionSweepDocument, OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument, SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument};
+use crate::solution::Method;
+
+impl Kind {
+    /// The JSON Schema as the types have it: what the file `schemas/` of this kind has to say.
+    pub fn generated_schema(self) -> Value {
+        let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
+        let mut schema = match self {
+            Self::Solution => generator.into_root_schema_for::<SolutionDocument>(),
+            Self::Comparison => generator.into_root_schema_for::<ComparisonDocument>(),
+            Self::Impact => generator.into_root_schema_for::<ImpactDocument>(),
+            Self::ImpactComparison => generator.into_root_schema_for::<ImpactComparisonDocument>(),
+            Self::Simulation => generator.into_root_schema_for::<SimulationDocument>(),
+            Self::Motion => generator.into_root_schema_for::<MotionDocument>(),
+            Self::MotionSweep => generator.into_root_schema_for::<MotionSweepDocument>(),
+            Self::Primary => generator.into_root_schema_for::<PrimaryDocument>(),
+            Self::PrimarySweep => generator.into_root_schema_for::<PrimarySweepDocument>(),
+            Self::Sweep => generator.into_root_schema_for::<SweepDocument>(),
+            Self::Response => generator.into_root_schema_for::<ResponseDocument>(),
+            Self::Friction => generator.into_root_schema_for::<FrictionDocument>(),
+            Self::Lagrangian => generator.into_root_schema_for::<LagrangianDocument>(),
+            Self::Materials => generator.into_root_schema_for::<MaterialsDocument>(),
+            Self::Optimization => generator.into_root_schema_for::<OptimizationDocument>(),
+            Self::Stability => generator.into_root_schema_for::<StabilityDocument>(),
+            Self::Audit => generator.into_root_schema_for::<AuditDocument>(),
+            Self::Catalog => generator.into_root_schema_for::<CatalogDocument>(),
+            Self::Certificate => generator.into_root_schema_for::<EitherCertificate>(),
+        };
+        schema.insert("title".to_owned(), self.schema().into());
+        let mut schema = head_first(schema.to_value());
+        in_one_line(&mut schema);
+        schema
+    }
+}
+
+/// A certificate of a conservative motion or of a limit cycle, told apart by `ode`.
+struct EitherCertificate;
+
+impl JsonSchema for EitherCertificate {
+    fn schema_name() -> Cow<'static, str> {
+        "EitherCertificate".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let kinds = [
+            generator.subschema_for::<CertificateDocument>(),
+            generator.subschema_for::<DampedCertificateDocument>(),
+        ];
+        json_schema!({
+            "description": "Numbers from which a motion can be proved, and how far a formula for it is off: a conservative motion, or a limit cycle.",
+            "anyOf": kinds,
+        })
+    }
+}
+
+/// What a reader looks for first stands first.
+fn head_first(schema: Value) -> Value {
+    let Value::Object(mut rest) = schema else {
+        return schema;
+    };
+    let head = ["$schema", "title", "description"];
+    let mut ordered: serde_json::Map<String, Value> =
+        head.iter().filter_map(|key| rest.shift_remove_entry(*key)).collect();
+    ordered.extend(rest);
+    ordered.into()
+}
+
+/// Descriptions are wrapped where they are written, in lines of the source.
+fn in_one_line(schema: &mut Value) {
+    match schema {
+        Value::Object(map) => {
+            for (key, entry) in map.iter_mut() {
+                match entry {
+                    Value::String(text) if key == "description" => *text = text.replace('\n', " "),
+                    _ => in_one_line(entry),
+                }
+            }
+        }
+        Value::Array(list) => list.iter_mut().for_each(in_one_line),
+        _ => {}
+    }
+}
+
+/// The schema of the name of a method.
+pub(super) fn methods(_: &mut SchemaGenerator) -> Schema {
+    json_schema!({ "type": "string", "enum": Method::ALL.map(Method::name) })
+}
+

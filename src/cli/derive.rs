@@ -222,7 +222,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             page(picture, derivation, |page| html::document(&document, page))
         }
         Format::Svg => drawn(picture)?,
-        Format::Latex => derivation + &latex::solution(&solution, verification.as_ref()),
+        Format::Latex => {
+            let document = report::solution(&solution, verification.as_ref(), tolerance);
+            derivation + &latex::document(&document)
+        }
         format @ Format::Csv => no_such(format)?,
         Format::Json => {
             let mut document = json::solution(&solution, verification.as_ref());

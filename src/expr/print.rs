@@ -59,6 +59,29 @@ impl Expr {
     }
 }
 
+impl Expr {
+    /// A root of a sum with the number before it under it, where decimals stand there then: `sqrt(1.2790187861666 + A^2)` for
+    /// `1e-13*sqrt(1.2790187861666e26 + ...)`, as which the normal form has it. For reading alone.
+    pub(crate) fn with_number_under_root(&self) -> Option<Self> {
+        let (number, factors) = self.factors();
+        let [root] = factors else { return None };
+        let Node::Power(sum, exponent) = root.node() else {
+            return None;
+        };
+        let Node::Sum(terms) = sum.node() else { return None };
+        if !is_half(exponent) || !number.is_positive() || number.is_one() {
+            return None;
+        }
+        let square = Self::number(&number * &number);
+        let inside = Self::sum(terms.iter().map(|term| &square * term));
+        let has_decimals = inside.terms().iter().any(|term| {
+            let number = term.factors().0;
+            !number.is_integer() && decimal_of_long_fraction(&number).is_some()
+        });
+        has_decimals.then(|| Self::from_node(Node::Power(inside, exponent.clone())))
+    }
+}
+
 impl fmt::Display for Expr {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write_expr(self, Place::Free, formatter)
@@ -369,6 +392,30 @@ mod tests {
             let number = parse_expression(text).unwrap();
             assert_eq!(number.to_string(), printed);
             assert_eq!(parse_expression(printed).unwrap(), number, "{text}");
+        }
+    }
+
+    #[test]
+    fn decimals_stand_under_their_root() {
+        for (text, printed) in [
+            (
+                "sqrt(1.41421356237309 + 1.06066017177982*A^2)",
+                Some("sqrt(1.41421356237309 + 1.06066017177982*A^2)"),
+            ),
+            (
+                "sqrt(4.76220315590459 + 3*A^2/4)",
+                Some("sqrt(4.76220315590459 + 3*A^2/4)"),
+            ),
+            ("sqrt(4 + 3*A^2)/2", None),
+            ("7*sqrt(A)/3", None),
+            ("3*sqrt(2)", None),
+        ] {
+            let expr = parse_expression(text).unwrap();
+            let read = expr.with_number_under_root();
+            assert_eq!(read.as_ref().map(ToString::to_string).as_deref(), printed, "{text}");
+            if let Some(printed) = printed {
+                assert_eq!(parse_expression(printed).unwrap(), expr, "{text}");
+            }
         }
     }
 

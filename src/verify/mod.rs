@@ -142,6 +142,13 @@ impl Verification {
     /// The verdict with what it was reached on: of a motion that changes frequency and amplitude both; of one that passes by its frequency
     /// while the motion is further off, that as well.
     pub fn verdict_in_words(&self, tolerance: f64) -> String {
+        let within = significant(100.0 * tolerance, 3);
+        self.verdict_on_both(tolerance)
+            .unwrap_or_else(|| format!("{} (|relative error| <= {within} %)", self.verdict.name()))
+    }
+
+    /// The verdict with the two numbers that it is about; `None` where the frequency alone says all of it.
+    pub fn verdict_on_both(&self, tolerance: f64) -> Option<String> {
         let verdict = self.verdict.name();
         let within = significant(100.0 * tolerance, 3);
         let said = |what: &str, error: Option<f64>| match error.map(f64::abs) {
@@ -151,17 +158,17 @@ impl Verification {
         };
         let far_off = self.max_deviation.filter(|deviation| *deviation > tolerance);
         match (&self.followed, self.verdict, far_off) {
-            (Some(followed), ..) => format!(
+            (Some(followed), ..) => Some(format!(
                 "{verdict}: {}, {}",
                 said("frequency", self.relative_error),
                 said("amplitude", followed.amplitude_error)
-            ),
-            (None, Verdict::Pass, Some(_)) => format!(
+            )),
+            (None, Verdict::Pass, Some(_)) => Some(format!(
                 "{verdict}: {}, {}",
                 said("frequency", self.relative_error),
                 said("motion", far_off)
-            ),
-            (None, ..) => format!("{verdict} (|relative error| <= {within} %)"),
+            )),
+            (None, ..) => None,
         }
     }
 }

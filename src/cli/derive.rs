@@ -172,6 +172,10 @@ fn unjudged(error: &VerificationError) -> Failure {
             error,
             Some("--method averaging follows the motion from A to the cycle".to_owned()),
         ),
+        VerificationError::NeverRepeats => Failure::refused(
+            error,
+            Some("leave the values out; `lindstedt simulate` follows the motion from any start".to_owned()),
+        ),
         _ => Failure::refused(error, None),
     }
 }

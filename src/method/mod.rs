@@ -19,6 +19,7 @@ pub(crate) mod exact;
 mod exact_motion;
 pub(crate) mod expansion;
 pub(crate) mod first_order;
+mod forced_waves;
 pub(crate) mod frequency_formula;
 mod frequency_response;
 pub(crate) mod hamiltonian;
@@ -452,7 +453,7 @@ impl Unsuited {
             }
             Self::NoWave { .. } => Advice::words("in numbers any equation can be followed: `lindstedt simulate`"),
             Self::SecondDrive { .. } => Advice::words(
-                "write both as multiples of one letter or number, such as cos(W*t) and cos(3*W*t): combination resonances of frequencies without such a ratio are not derived; in numbers any equation can be followed: `lindstedt simulate`",
+                "write both as multiples of one letter or number, such as cos(W*t) and cos(3*W*t); without such a ratio the first order of a drive near omega0 is derived, where a letter such as eps makes all nonlinear terms small, none is quadratic, and the other drives are forces far from every resonance; in numbers any equation can be followed: `lindstedt simulate`",
             ),
             Self::ResonanceWithoutDamping { .. } => Advice::words(
                 "the amplitude grows in proportion to time, x = (F/(2*omega0))*t*sin(omega0*t) for F*cos(omega0*t); give a damping such as 2*zeta*x'",
@@ -711,7 +712,9 @@ fn solve_as_asked(oscillator: &Oscillator, options: &Options) -> Result<Solution
         None => default_method::solve(oscillator, options),
     };
     match found.as_ref().is_err_and(base_motion::is_of_drive) {
-        true => base_motion::solve(oscillator, options).map_or(found, Ok),
+        true => base_motion::solve(oscillator, options)
+            .or_else(|| forced_waves::solve(oscillator, options))
+            .map_or(found, Ok),
         false => found,
     }
 }

@@ -56,7 +56,7 @@ use crate::numeric::period::PeriodError;
 use crate::numeric::return_map::NoLimitCycle;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Solution};
+use crate::solution::{AmplitudeConvention, Note, Solution};
 use crate::symbol::Symbol;
 use crate::trajectory::TrajectoryError;
 use crate::values::Values;
@@ -209,6 +209,9 @@ pub enum VerificationError {
     /// A motion whose amplitude changes.
     #[error("the amplitude of the motion changes, so it has no period to be compared with")]
     NotPeriodic,
+    /// A motion under drives whose frequencies have no ratio.
+    #[error("under drives whose frequencies have no ratio no motion repeats itself, and there is none to compare with")]
+    NeverRepeats,
     /// The equation cannot be followed.
     #[error(transparent)]
     Trajectory(#[from] TrajectoryError),
@@ -353,6 +356,7 @@ pub(crate) fn judge_to(
         return in_time::judge(oscillator, solution, motion, at, tolerance);
     }
     if let Some(response) = &solution.response {
+        repeats(solution)?;
         return driven::judge(oscillator, solution, response, at, tolerance);
     }
     if let Some(moving) = off_cycle(solution, at) {
@@ -439,6 +443,15 @@ pub(crate) fn judge_to(
         followed: None,
         verdict: Verdict::of(pass),
     })
+}
+
+/// An error where the drives have frequencies without a ratio.
+fn repeats(solution: &Solution) -> Result<(), VerificationError> {
+    let apart = |note: &Note| matches!(note, Note::ForcedWaves { .. });
+    match solution.validity.iter().any(apart) {
+        true => Err(VerificationError::NeverRepeats),
+        false => Ok(()),
+    }
 }
 
 /// The question in the coordinate of its answer, where that is another one: relative to a base that moves.
@@ -664,6 +677,7 @@ pub fn motions(
         return in_time::motions(oscillator, solution, motion, at).map(Some);
     }
     if let Some(response) = &solution.response {
+        repeats(solution)?;
         return driven::motions(oscillator, solution, response, at);
     }
     if let Some(moving) = off_cycle(solution, at) {

@@ -64,7 +64,7 @@ use table::{Choice, Entry, that_take};
 
 use crate::equilibrium::{Centred, centred, stable_elsewhere};
 use crate::exact::{POLYNOMIALS, Polynomial};
-use crate::expr::{Expr, ExprError, NAMES_OF_ANSWERS, Quotation};
+use crate::expr::{Expr, ExprError, NAMES_OF_ANSWERS, Node, Quotation};
 use crate::interrupt::Supervision;
 use crate::oscillator::corner::near_rest;
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
@@ -380,6 +380,13 @@ pub enum Unsuited {
     },
 }
 
+/// Whether a function in a term depends on a coordinate and its velocity both.
+fn turns_with_both(term: &Expr) -> bool {
+    let both = |part: &Expr| part.symbols().iter().any(|name| part.contains(name.derivative()));
+    term.unique_nodes()
+        .any(|part| matches!(part.node(), Node::Function(..)) && both(part))
+}
+
 fn resonances(others: &[(u32, u32)]) -> String {
     let names: Vec<String> = others.iter().map(|(p, q)| format!("{p}:{q}")).collect();
     match names.is_empty() {
@@ -495,9 +502,12 @@ impl Unsuited {
             Self::LowestOrder { lowest } | Self::BelowBalance { lowest } => Advice::words("try ").choose(Setting::Order(*lowest)),
             Self::SlowAmplitude => Advice::words("leave out ").choose(Setting::Amplitude(AmplitudeConvention::Initial)),
             Self::NoSteadyAmplitude => Advice::words("give numbers for the parameters, in the equation"),
-            Self::NoProjection { .. } => {
-                Advice::words("powers of x and x', their sizes and signs, and (2/pi)*atan(k*x') have one")
-            }
+            Self::NoProjection { term } => Advice::words(match turns_with_both(term.expression()) {
+                true => {
+                    "a function of x and x' together has none; in factors of their own both have one, as sgn(x)*sgn(x') for sgn(x*x'); in numbers any equation can be followed: `lindstedt simulate`"
+                }
+                false => "powers of x and x', their sizes and signs, and (2/pi)*atan(k*x') have one",
+            }),
             Self::HighestOrder { highest } => Advice::words("try ").choose(Setting::Order(*highest)),
             Self::NoSuchChoice { choice } => Advice::words(format!("it belongs to {}", that_take(*choice))),
             Self::PolynomialOnly { .. } => match refuser {

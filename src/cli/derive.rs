@@ -172,6 +172,10 @@ fn unjudged(error: &VerificationError) -> Failure {
             error,
             Some("--method averaging follows the motion from A to the cycle".to_owned()),
         ),
+        VerificationError::NeverRepeats => Failure::refused(
+            error,
+            Some("leave the values out; `lindstedt simulate` follows the motion from any start".to_owned()),
+        ),
         _ => Failure::refused(error, None),
     }
 }
@@ -222,7 +226,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             page(picture, derivation, |page| html::document(&document, page))
         }
         Format::Svg => drawn(picture)?,
-        Format::Latex => derivation + &latex::solution(&solution, verification.as_ref()),
+        Format::Latex => {
+            let document = report::solution(&solution, verification.as_ref(), tolerance);
+            derivation + &latex::document(&document)
+        }
         format @ Format::Csv => no_such(format)?,
         Format::Json => {
             let mut document = json::solution(&solution, verification.as_ref());

@@ -46,7 +46,7 @@ pub(super) fn sum(sum: &Sum) -> String {
 fn constant(value: &Expr) -> String {
     match long_fraction(value) {
         Some(number) => expression(&Expr::number(rounded_fraction(number, 15))),
-        None => expression(value),
+        None => expression(value.with_number_under_root().as_ref().unwrap_or(value)),
     }
 }
 
@@ -98,7 +98,7 @@ pub fn typed(text: &str) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn solution(solution: &Solution, verification: Option<&Verification>) -> String {
-    // The tolerance of the verdict stays outside of an article.
+    // What a verdict is reached on is said with the tolerance that is usual.
     document(&report::solution(solution, verification, DEFAULT_TOLERANCE))
 }
 
@@ -357,8 +357,9 @@ impl Page {
             Block::Judged {
                 verification,
                 series_of_omega,
+                tolerance,
                 ..
-            } => self.comment(Rank::Verdict, judged(verification, *series_of_omega)),
+            } => self.comment(Rank::Verdict, judged(verification, *series_of_omega, *tolerance)),
             Block::Truth {
                 equation, frequency, ..
             } => self.comment(Rank::Note, comparison::truth(equation, frequency)),
@@ -399,7 +400,7 @@ impl Page {
 }
 
 /// The verdict in one line.
-fn judged(verification: &Verification, series_of_omega: Option<f64>) -> String {
+fn judged(verification: &Verification, series_of_omega: Option<f64>, tolerance: f64) -> String {
     let error = verification.relative_error.map(|error| match error.abs() < 1e-9 {
         true => super::text::percent(error),
         false => decimal(100.0 * error) + " %",
@@ -411,7 +412,9 @@ fn judged(verification: &Verification, series_of_omega: Option<f64>) -> String {
         error.as_deref().unwrap_or("none"),
         verification.judged_on,
         other.unwrap_or_default(),
-        verification.verdict.name()
+        verification
+            .verdict_on_both(tolerance)
+            .unwrap_or_else(|| verification.verdict.name().to_owned())
     )
 }
 

@@ -185,6 +185,17 @@ fn the_branch_points_of_van_der_pol() {
         (other.angle - to_f64(&nearest.angle.value)).abs() < 1e-4,
         "{other:?} {found:?}"
     );
+    // So do the twenty and more of order 40, where the kind of the singularity cannot be told yet.
+    for order in [40, 44, 48, 52] {
+        let early =
+            converges(&frequency(VAN_DER_POL, order)).unwrap_or_else(|| panic!("order {order}: no singularity"));
+        let own = &early.nearest;
+        assert!(own.exponent.is_none() && own.radius.error < 0.1, "{early:?}");
+        assert!(
+            holds(&own.radius, &nearest.radius.value) && holds(&own.angle, &nearest.angle.value),
+            "{early:?}"
+        );
+    }
     // More coefficients move it by no more than fewer said.
     let further = converges(&frequency(VAN_DER_POL, 170)).expect("the same");
     assert!(further.nearest.radius.error < 1e-16, "{further:?}");

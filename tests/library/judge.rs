@@ -848,3 +848,31 @@ fn an_amplitude_of_the_other_convention_is_converted() {
         );
     }
 }
+
+/// A verdict that is reached on two numbers says both in LaTeX too, in the words of the text.
+#[test]
+fn latex_says_what_a_verdict_is_reached_on() {
+    for (equation, method, at) in [
+        (
+            "x'' + 2*zeta*x' + x + eps*x^3 = 0",
+            Method::Averaging,
+            vec![("A", "1"), ("zeta", "1/10"), ("eps", "1/5")],
+        ),
+        ("x'' + x^3 = 0", Method::HarmonicBalance, vec![("A", "1")]),
+    ] {
+        let oscillator = Oscillator::parse(equation).unwrap();
+        let options = Options {
+            method: Some(method),
+            order: Some(1),
+            ..Options::default()
+        };
+        let solution = solve(&oscillator, &options).unwrap();
+        let found = judge(&oscillator, &solution, &values(&at), 0.03).unwrap();
+        let words = found.verdict_in_words(0.03);
+        let document = lindstedt::report::solution(&solution, Some(&found), 0.03);
+        let latex = lindstedt::export::latex::document(&document);
+        let both = found.verdict_on_both(0.03).is_some();
+        assert_eq!(latex.contains(&format!("verdict {words}\n")), both, "{words}: {latex}");
+        assert!(both || latex.contains("verdict pass\n"), "{latex}");
+    }
+}

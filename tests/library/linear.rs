@@ -149,3 +149,39 @@ fn an_expansion_that_is_asked_for_stays_one() {
         assert_ne!(found.method, Method::Exact);
     }
 }
+
+/// A free linear motion is answered as what it is: no order, nothing cut off, and the law of its letters.
+#[test]
+fn free_linear_equations_are_answered_exactly() {
+    for (equation, law, motion) in [
+        ("x'' + 4*x = 0", "omega = 2", "A*cos(2*t)"),
+        ("x'' + w^2*x = 0", "omega = w", "A*cos(w*t)"),
+        ("m*x'' + k*x = 0", "omega^2 = k/m", "A*cos(t*sqrt(k/m))"),
+        ("2*x'' + 4*x = 1", "omega^2 = 2", "1/4 + A*cos(sqrt(2)*t)"),
+    ] {
+        let (_, solution) = answered(equation);
+        assert_eq!(solution.formula(), law, "{equation}");
+        assert_eq!(
+            solution.closed_motion.as_ref().expect("a motion").to_string(),
+            motion,
+            "{equation}"
+        );
+        let text = lindstedt::export::text::solution(&solution, None, 0.01);
+        assert!(
+            text.contains("exact: the equation is linear") && !text.contains("truncated"),
+            "{text}"
+        );
+    }
+    // Asked of an expansion, nothing is cut off either; what is not linear is an expansion still.
+    let text = |equation: &str| {
+        let options = Options {
+            method: Some(Method::LindstedtPoincare),
+            order: Some(1),
+            ..Options::default()
+        };
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        lindstedt::export::text::solution(&solve(&oscillator, &options).expect(equation), None, 0.01)
+    };
+    assert!(!text("x'' + 4*x = 0").contains("truncated"));
+    assert!(text("x'' + 4*x + x^3 = 0").contains("truncated"));
+}

@@ -183,6 +183,17 @@ fn fixed(value: &Rational, decimals: usize) -> String {
     format!("{sign}{whole}{point}{fraction}")
 }
 
+/// Whether a fraction has a decimal that ends.
+pub fn ends(value: &Rational) -> bool {
+    let mut rest = value.denom().clone();
+    for factor in [2, 5].map(Integer::from) {
+        while (&rest % &factor).is_zero() {
+            rest /= &factor;
+        }
+    }
+    rest == Integer::from(1)
+}
+
 /// The decimal that a fraction is, where it ends and its text is shorter than that of a long fraction: `1e-300`, `3.00853856091339`;
 /// `None` for short fractions and all others.
 pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {

@@ -115,11 +115,11 @@ impl Definition {
     }
 }
 
-/// A constant; a fraction of many digits, which is a rounded number, as a decimal.
+/// A constant; a fraction of many digits, which is a rounded number, as a decimal, and a root of rounded numbers with decimals under it.
 pub fn constant_in_words(value: &Expr) -> String {
     match long_fraction(value) {
         Some(number) => significant_fraction(number, 15),
-        None => value.to_string(),
+        None => value.with_number_under_root().as_ref().unwrap_or(value).to_string(),
     }
 }
 

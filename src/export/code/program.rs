@@ -15,7 +15,8 @@ use crate::method::table::{Entry, Motion};
 use crate::oscillator::Oscillator;
 use crate::report::{self, Block, Document};
 use crate::series::FourierSeries;
-use crate::solution::{Definition, Solution};
+use crate::solution::note::ExactBy;
+use crate::solution::{Definition, Note, Solution};
 use crate::symbol::Symbol;
 use crate::verify::Verification;
 
@@ -681,6 +682,9 @@ fn unseen(oscillator: &Oscillator, solution: &Solution) -> Option<&'static str> 
         }
         _ => false,
     };
+    if solution.validity.contains(&Note::Exact(ExactBy::Linear)) {
+        return None;
+    }
     if Entry::of(solution.method).motion == Motion::Exact {
         return Some(
             "The program does not look whether the motion is periodic: where it is not, its numbers mean nothing.",

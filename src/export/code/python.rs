@@ -54,9 +54,9 @@ fn function(function: Function) -> &'static str {
 
 /// What is imported: `pow` of the module is a `ValueError` where the built-in one would be a complex number.
 fn beginning(used: &Used) -> String {
-    const MODULE: [&str; 17] = [
-        "acos", "asin", "atan", "ceil", "copysign", "cos", "cosh", "exp", "gamma", "log", "pi", "pow", "sin", "sinh",
-        "sqrt", "tan", "tanh",
+    const MODULE: [&str; 18] = [
+        "acos", "asin", "asinh", "atan", "ceil", "copysign", "cos", "cosh", "exp", "gamma", "log", "pi", "pow", "sin",
+        "sinh", "sqrt", "tan", "tanh",
     ];
     let imported: Vec<&str> = MODULE.into_iter().filter(|name| used.has(name)).collect();
     match imported.is_empty() {

@@ -65,6 +65,7 @@ fn function(function: Function) -> &'static str {
         Function::Asin => ".asin",
         Function::Acos => ".acos",
         Function::Atan => ".atan",
+        Function::Asinh => ".asinh",
         Function::Exp => ".exp",
         Function::Log => ".ln",
         Function::Absolute => ".abs",

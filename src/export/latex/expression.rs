@@ -198,6 +198,7 @@ fn call(function: Function, arguments: &[Expr]) -> Vec<Piece> {
         Function::Asin => "\\arcsin",
         Function::Acos => "\\arccos",
         Function::Atan => "\\arctan",
+        Function::Asinh => "\\operatorname{arsinh}",
         Function::Log => "\\ln",
         Function::Sign => "\\operatorname{sgn}",
         Function::Step => "\\mathrm{H}",

@@ -4,7 +4,8 @@ use lindstedt::expr::Expr;
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::{Method, Note, Solution};
 use lindstedt::verify::Verification;
-use lindstedt::{Oscillator, Values, Verdict, judge};
+use lindstedt::verify::VerificationError;
+use lindstedt::{Oscillator, Symbol, Values, Verdict, judge};
 
 fn derived(equation: &str, resonance: Option<(u32, u32)>, order: Option<u32>) -> (Oscillator, Solution) {
     let oscillator = Oscillator::parse(equation).expect(equation);
@@ -86,7 +87,7 @@ fn slow_equations_of_both_drives_are_their_sum() {
 
 #[test]
 fn frequencies_without_a_ratio_are_refused_by_name() {
-    let oscillator = Oscillator::parse("x'' + x + eps*x^3 = F*cos(W*t) + G*cos(V*t)").expect("an oscillator");
+    let oscillator = Oscillator::parse("x'' + x + x^3 = F*cos(W*t) + G*cos(V*t)").expect("an oscillator");
     let refusal = solve(&oscillator, &Options::default()).expect_err("no ratio");
     assert!(
         refusal.term().is_some_and(|term| term.contains("cos(V*t)")),
@@ -183,4 +184,136 @@ fn an_order_at_which_nothing_holds_the_motion_is_refused() {
     };
     let solution = solve(&oscillator, &held).expect("an answer");
     assert!(solution.response.is_some_and(|response| response.relation.is_some()));
+}
+
+/// The amplitude with which the true motion swings at a frequency, once what was free has died out, by Runge-Kutta and the mean of the
+/// motion beside that wave under a window that lets no other frequency through.
+fn true_line(force: impl Fn(f64, f64, f64) -> f64, frequency: f64, [dies_out, window]: [f64; 2]) -> f64 {
+    const STEP: f64 = 0.02;
+    let (mut t, mut x, mut v) = (0.0, 0.0, 0.0);
+    let (mut cosine, mut sine, mut whole) = (0.0, 0.0, 0.0);
+    while t < dies_out + window {
+        let rate = |t: f64, x: f64, v: f64| (v, -force(t, x, v));
+        let a = rate(t, x, v);
+        let b = rate(t + STEP / 2.0, x + STEP / 2.0 * a.0, v + STEP / 2.0 * a.1);
+        let c = rate(t + STEP / 2.0, x + STEP / 2.0 * b.0, v + STEP / 2.0 * b.1);
+        let d = rate(t + STEP, x + STEP * c.0, v + STEP * c.1);
+        x += STEP / 6.0 * (a.0 + 2.0 * b.0 + 2.0 * c.0 + d.0);
+        v += STEP / 6.0 * (a.1 + 2.0 * b.1 + 2.0 * c.1 + d.1);
+        t += STEP;
+        if t > dies_out {
+            let weight = (std::f64::consts::PI * (t - dies_out) / window).sin().powi(4);
+            cosine += weight * x * (frequency * t).cos();
+            sine += weight * x * (frequency * t).sin();
+            whole += weight;
+        }
+    }
+    2.0 * (cosine * cosine + sine * sine).sqrt() / whole
+}
+
+/// Drives of unrelated frequencies: beside the one near the linear frequency the others shift that by 3*eps*Lambda^2 each, as Nayfeh and
+/// Mook have it, and the steady motion is the true one up to a part that halves with all that is small.
+#[test]
+fn drives_without_a_ratio_act_together() {
+    let duffing = "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(W*t) + G*cos(V*t)";
+    let (_, solution) = derived(duffing, None, None);
+    let slow = solution.modulation.as_ref().expect("slow equations");
+    let resonance = slow.resonance.as_ref().expect("a drive");
+    let near = resonance.driving_frequency.to_string();
+    assert!(["V", "W"].contains(&near.as_str()), "{near}");
+    let (weak, strong, far) = if near == "W" { ("F", "G", "V") } else { ("G", "F", "W") };
+    let rate: Expr = format!("sigma - 3*eps*a^2/8 - 3*eps*Lambda^2 + {weak}*cos(psi)/(2*a)")
+        .parse()
+        .expect("a rate");
+    assert!(
+        (&slow.phase_rate - &rate).expand().expect("short").is_zero(),
+        "{}",
+        slow.phase_rate
+    );
+    let size: Expr = format!("{strong}/(2*(1 - {far}^2))").parse().expect("a size");
+    let lambda = solution
+        .definitions
+        .iter()
+        .find(|own| own.symbol == Symbol::new("Lambda"));
+    assert_eq!(lambda.expect("Lambda").meaning, size);
+    let error = |eps: f64| {
+        let (zeta, weak_size, strong_size) = (0.5 * eps, eps, 3.0);
+        let (near_rate, far_rate) = (1.0 + 0.6 * eps, 2.0_f64.sqrt() + 0.6);
+        let number = |name: Symbol| {
+            Some(match name.name() {
+                "zeta" => zeta,
+                "eps" => eps,
+                name if name == weak => weak_size,
+                name if name == strong => strong_size,
+                name if name == near => near_rate,
+                name if name == far => far_rate,
+                _ => return None,
+            })
+        };
+        let states = solution.steady_states(&number);
+        let [only] = states.as_slice() else {
+            panic!("{states:?}")
+        };
+        let force = |t: f64, x: f64, v: f64| {
+            let drives = weak_size * (near_rate * t).cos() + strong_size * (far_rate * t).cos();
+            2.0 * zeta * v + x + eps * x.powi(3) - drives
+        };
+        let truth = true_line(force, near_rate, [16.0 / zeta, 400.0]);
+        only.amplitude / truth - 1.0
+    };
+    let [coarse, fine] = [0.04, 0.02].map(error);
+    assert!(
+        coarse.abs() < 0.08 && fine.abs() < 0.6 * coarse.abs(),
+        "{coarse} {fine}"
+    );
+    // Without a period there is no verdict.
+    let oscillator = Oscillator::parse(duffing).expect("an oscillator");
+    let at: Values = "zeta = 1/50, eps = 1/25, F = 1/25, G = 3, W = 1.02, V = 2.01"
+        .parse()
+        .expect("values");
+    assert_eq!(
+        judge(&oscillator, &solution, &at, 0.01),
+        Err(VerificationError::NeverRepeats)
+    );
+}
+
+/// Of drives with numbers the nearest to the linear frequency is the one in resonance; what is missing is refused.
+#[test]
+fn drives_without_a_ratio_say_which_is_near() {
+    let near = |equation: &str| {
+        let (_, solution) = derived(equation, None, None);
+        let notes = solution.validity.iter();
+        notes
+            .filter_map(|note| match note {
+                Note::ForcedWaves { near, far } => Some((near.to_string(), far.len())),
+                _ => None,
+            })
+            .next()
+    };
+    let one = |near: &str, far: usize| Some((near.to_owned(), far));
+    assert_eq!(
+        near("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(sqrt(2)*t) + G*cos(21*t/20)"),
+        one("21/20", 1)
+    );
+    assert_eq!(
+        near("x'' + 2*eps*z*x' + x + eps*x^3 = F*cos(W*t) + eps*G*cos(Z*t)"),
+        one("Z", 1)
+    );
+    assert_eq!(
+        near("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(U*t) + G*cos(V*t) + H1*sin(W*t)").map(|found| found.1),
+        Some(2)
+    );
+    for equation in [
+        "x'' + 2*zeta*x' + x + x^3 = F*cos(W*t) + G*cos(V*t)",
+        "x'' + 2*zeta*x' + x + eps*x^2 + eps*x^3 = F*cos(W*t) + G*cos(V*t)",
+        "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(W*t) + G*x*cos(V*t)",
+        "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(sqrt(2)*t) + G*cos(3*t)",
+    ] {
+        let oscillator = Oscillator::parse(equation).expect(equation);
+        let refusal = solve(&oscillator, &Options::default()).expect_err(equation).to_string();
+        assert!(
+            refusal.contains("drives whose frequencies are small multiples of one"),
+            "{refusal}"
+        );
+    }
 }

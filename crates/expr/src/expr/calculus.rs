@@ -297,6 +297,7 @@ mod tests {
             ("tanh(x)", "1/cosh(x)^2"),
             ("asin(x) + acos(x)", "0"),
             ("atan(x/k)", "1/(k*(1 + x^2/k^2))"),
+            ("asinh(x/k)", "1/(k*sqrt(1 + x^2/k^2))"),
             ("exp(-k*x)", "-k*exp(-k*x)"),
             ("log(k*x)", "1/x"),
             ("abs(x)", "sgn(x)"),

@@ -37,6 +37,8 @@ pub enum Function {
     Acos,
     /// `atan`
     Atan,
+    /// `asinh`, the inverse of `sinh`
+    Asinh,
     /// `exp`
     Exp,
     /// `log`, the natural logarithm
@@ -212,12 +214,14 @@ enum Parity {
 /// The function has no real value at this argument.
 struct NoValue;
 
-use Function::{Absolute, Acos, Asin, Atan, Cos, Cosh, Exp, Log, Maximum, Minimum, Sign, Sin, Sinh, Step, Tan, Tanh};
+use Function::{
+    Absolute, Acos, Asin, Asinh, Atan, Cos, Cosh, Exp, Log, Maximum, Minimum, Sign, Sin, Sinh, Step, Tan, Tanh,
+};
 use Function::{BesselI0, BesselI1, BesselJ0, BesselJ1, EllipticK, Gamma, JacobiCn, JacobiDn, JacobiSn};
 use Value::{One as Unary, Two as Binary};
 
 /// The entries stand in the order of the variants of [`Function`].
-static TABLE: [Entry; 25] = [
+static TABLE: [Entry; 26] = [
     Entry {
         function: Sin,
         name: "sin",
@@ -300,6 +304,14 @@ static TABLE: [Entry; 25] = [
         value: Unary(f64::atan),
         exact: |u, _| Ok(at(u, 0, Expr::zero).or_else(|| at(u, 1, || turn(1, 4)))),
         derivative: |u, _, _| Expr::divide(&Expr::one(), &(Expr::one() + u.integer_power(2)?)),
+    },
+    Entry {
+        function: Asinh,
+        name: "asinh",
+        parity: Parity::Odd,
+        value: Unary(f64::asinh),
+        exact: |u, _| Ok(at(u, 0, Expr::zero)),
+        derivative: |u, _, _| Expr::divide(&Expr::one(), &(Expr::one() + u.integer_power(2)?).sqrt()?),
     },
     Entry {
         function: Exp,

@@ -10,7 +10,7 @@ use std::fmt::{self, Write};
 use num_traits::{One, Signed, Zero};
 
 use super::{Expr, Function, Node};
-use crate::decimal::decimal_of_long_fraction;
+use crate::decimal::{decimal_of_long_fraction, ends, rounded_fraction};
 use crate::exact::rational::{Rational, ratio};
 
 /// A term as sign, numerator and denominator, for printing.
@@ -56,6 +56,41 @@ impl Expr {
             numerator,
             denominator,
         }
+    }
+}
+
+impl Expr {
+    /// A root of a sum with the number before it under it, where rounded numbers stand there then, of fifteen digits:
+    /// `sqrt(1.27901878616664 + A^2)` for `1e-14*sqrt(1.27901878616664e28 + ...)`, as which the normal form has it. For reading alone.
+    pub(crate) fn with_number_under_root(&self) -> Option<Self> {
+        /// A fraction with more signs than this must be a rounded number.
+        const MANY: usize = 16;
+        const DIGITS: usize = 15;
+        let (number, factors) = self.factors();
+        let [root] = factors else { return None };
+        let Node::Power(sum, exponent) = root.node() else {
+            return None;
+        };
+        let Node::Sum(terms) = sum.node() else { return None };
+        if !is_half(exponent) || !number.is_positive() || number.is_one() {
+            return None;
+        }
+        let square = Self::number(&number * &number);
+        let inside: Vec<Self> = terms.iter().map(|term| &square * term).collect();
+        let is_long = |number: &Rational| !number.is_integer() && number.to_string().len() > MANY;
+        let numbers = || inside.iter().map(|term| term.factors().0);
+        if !numbers().all(|number| ends(&number)) || !numbers().any(|number| is_long(&number)) {
+            return None;
+        }
+        let rounded = inside.iter().map(|term| {
+            let (number, factors) = term.factors();
+            let number = match is_long(&number) {
+                true => rounded_fraction(&number, DIGITS),
+                false => number,
+            };
+            Self::product(std::iter::once(Self::number(number)).chain(factors.iter().cloned()))
+        });
+        Some(Self::from_node(Node::Power(Self::sum(rounded), exponent.clone())))
     }
 }
 
@@ -369,6 +404,32 @@ mod tests {
             let number = parse_expression(text).unwrap();
             assert_eq!(number.to_string(), printed);
             assert_eq!(parse_expression(printed).unwrap(), number, "{text}");
+        }
+    }
+
+    #[test]
+    fn decimals_stand_under_their_root() {
+        for (text, printed) in [
+            (
+                "sqrt(1.41421356237309 + 1.06066017177982*A^2)",
+                Some("sqrt(1.41421356237309 + 1.06066017177982*A^2)"),
+            ),
+            (
+                "sqrt(4.76220315590459 + 3*A^2/4)",
+                Some("sqrt(4.76220315590459 + 3*A^2/4)"),
+            ),
+            (
+                "1.6e-13*sqrt(5.52427172801989e25 + 4.14320379601491e25*A^2 + 2.58950237250933e25*A^4)",
+                Some("sqrt(1.41421356237309 + 1.06066017177982*A^2 + 0.662912607362388*A^4)"),
+            ),
+            ("sqrt(4 + 3*A^2)/2", None),
+            ("sqrt(1234567890123456 + A^2)/1234567890123457", None),
+            ("7*sqrt(A)/3", None),
+            ("3*sqrt(2)", None),
+        ] {
+            let expr = parse_expression(text).unwrap();
+            let read = expr.with_number_under_root();
+            assert_eq!(read.as_ref().map(ToString::to_string).as_deref(), printed, "{text}");
         }
     }
 

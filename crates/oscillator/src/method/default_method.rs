@@ -1,7 +1,7 @@
 //! Which method answers where none is asked for.
 //!
 //! ```text
-//! linear, damped or driven               exact, where no order, resonance or small parameter is asked for
+//! linear, free, damped or driven         exact, where no order, resonance or small parameter is asked for
 //! time occurs                            multiple scales; averaging where the force has no expansion
 //! energy is drained or fed               Lindstedt-Poincare on a limit cycle, else averaging; multiple scales in powers of the
 //!                                        amplitude where quadratic terms stand beside a linear damping, or where averaging knows
@@ -15,7 +15,7 @@
 //!
 //! A formula of one term leaves the drift of an even force out, and is none then. Whatever stands in for the usual method says so.
 
-use super::linear::Linear;
+use super::linear::{Linear, is_free_and_linear};
 use super::multiple_scales::scaling::{has_linear_damping, has_quadratic_damping, has_quadratic_terms};
 use super::{Options, Refusal, Unsuited, solve_by};
 use crate::equilibrium::centred;
@@ -93,16 +93,17 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Result<Soluti
     }
 }
 
-/// The exact motion of a linear equation that something damps or drives; `None` where the equation is another one, or an expansion of the
-/// motion is asked for.
+/// The exact motion of a linear equation, free, damped or driven; `None` where the equation is another one, or an expansion of the motion
+/// is asked for.
 pub(super) fn linear(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
     let expansion = options.method.is_some()
         || options.order.is_some()
         || options.resonance.is_some()
         || options.small.is_some()
-        || options.cycle.is_some()
-        || options.frequency_alone;
-    if expansion || !about_equilibrium(oscillator, |centred, _| matches!(Linear::new(centred), Ok(Some(_)))) {
+        || options.cycle.is_some();
+    let free = |centred: &Oscillator| is_free_and_linear(centred).unwrap_or(false);
+    let moved = |centred: &Oscillator| !options.frequency_alone && matches!(Linear::new(centred), Ok(Some(_)));
+    if expansion || !about_equilibrium(oscillator, |centred, _| free(centred) || moved(centred)) {
         return None;
     }
     solve_by(Method::Exact, oscillator, options).ok()

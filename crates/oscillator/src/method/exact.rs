@@ -21,6 +21,7 @@
 //!
 //! ```text
 //! k sin(c x):           x = (2/c) asin(sin(c A/2) sn(sqrt(k c) t + K(m), m))
+//! k sinh(c x):          x = (2/c) asinh(sinh(c A/2) cn(sqrt(k c) cosh(c A/2) t, tanh(c A/2)^2))
 //! a x + b x^3 + l x^5:  x = A cn/sqrt(cn^2 + sqrt(p/r) sn^2 dn^2),   all of (p r)^(1/4) t
 //! a x + b x^3:          x = A cn(sqrt(a + b A^2) t, m)
 //! a x + b x^2:          x = A - 4 A (a + b A)/(P + D) sn^2(sqrt((P + D)/8) t, m)
@@ -39,7 +40,7 @@ use num_traits::{One, Zero};
 
 use super::energy_balance::positive_amplitude;
 use super::iteration_perturbation::polynomial_coefficients;
-use super::linear::Linear;
+use super::linear::{Linear, is_free_and_linear};
 use super::one_term::{conservative_force, unsolved};
 use super::{Options, Refusal};
 use crate::conservative::potential::potential;
@@ -74,6 +75,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let (law, motion) = known.map_or((None, None), |known| (Some(known.law), known.motion));
     solution.law = match law {
         Some(Frequency::Squared(squared)) => Law::squared(squared),
+        Some(Frequency::Plain(frequency)) => Law::Frequency(frequency),
         Some(Frequency::Form(value)) => Law::Closed(ClosedForm { squared: false, value }),
         None => Law::Quadrature(period_by_energy(oscillator, &force)?),
     };
@@ -87,6 +89,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     solution.closed_motion = motion;
     solution.derivation = period_by_energy(oscillator, &force)?;
     solution.validity.push(Note::Exact(match solution.law.quadrature() {
+        None if is_free_and_linear(oscillator)? => ExactBy::Linear,
         None => ExactBy::ClosedForm,
         Some(_) => ExactBy::Quadrature,
     }));
@@ -200,6 +203,7 @@ struct Known {
 
 enum Frequency {
     Squared(Polynomial),
+    Plain(Polynomial),
     Form(Expr),
 }
 
@@ -248,11 +252,14 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
     let squared = amplitude.integer_power(2)?;
     match powers.as_slice() {
         [1] => {
-            let rate = of(1).sqrt()?;
-            let law = coefficients.get(1).cloned();
+            let squared = coefficients.get(1).cloned().unwrap_or_else(Polynomial::zero);
+            let (rate, law) = match squared.single_term_root() {
+                Some(root) => (Expr::from(&root), Frequency::Plain(root)),
+                None => (of(1).sqrt()?, Frequency::Squared(squared)),
+            };
             let motion = &amplitude * &(rate * time()).cos()?;
-            Ok(law.map(|law| Known {
-                law: Frequency::Squared(law),
+            Ok(Some(Known {
+                law,
                 motion: Some(motion),
             }))
         }
@@ -343,9 +350,15 @@ pub(super) fn of_power(coefficient: &Expr, n: &Expr) -> Result<Expr, ExprError> 
     Expr::divide(&(scale * amplitude * gamma(half() + &inverse)?), &gamma(inverse)?)
 }
 
-/// A single term: a power with its sign, a sine or a hyperbolic sine.
+/// A linear force with a function of letters as its stiffness; a single term: a power with its sign, a sine or a hyperbolic sine.
 fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Known>, Refusal> {
     let coordinate = oscillator.coordinate;
+    if is_free_and_linear(oscillator)? {
+        let stiffness = force.differentiate(coordinate)?.expand()?;
+        let rate = stiffness.sqrt()?;
+        let motion = Expr::symbol("A") * (&rate * &time()).cos()?;
+        return Ok(Some(Known::form(rate, Some(motion))));
+    }
     let [term] = force.terms() else { return Ok(None) };
     let (mut outside, mut inside) = split(term, coordinate);
     if let [factor] = inside.as_slice()
@@ -355,10 +368,16 @@ fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Known>, R
     {
         let scale = (&outside * &slope).expand()?.sqrt()?;
         let angle = Expr::divide(&(&slope * &Expr::symbol("A")), &Expr::from(2))?;
-        let sine = Expr::function(*function, vec![angle])?;
+        let sine = Expr::function(*function, vec![angle.clone()])?;
         let squared = sine.integer_power(2)?;
         if *function == Function::Sinh {
-            return Ok(Some(Known::form(by_elliptic(&scale, -squared)?, None)));
+            // With s = sinh(c x/2) the energy is s'^2 = k c (1 + s^2) (S^2 - s^2), S the largest s: s = S cn.
+            let of_angle = |function| Expr::function(function, vec![angle.clone()]);
+            let rate = &scale * &of_angle(Function::Cosh)?;
+            let [_, cn, _] = jacobi(&(rate * time()), &of_angle(Function::Tanh)?.integer_power(2)?)?;
+            let turned = Expr::function(Function::Asinh, vec![sine * cn])?;
+            let motion = Expr::divide(&(Expr::from(2) * turned), &slope)?;
+            return Ok(Some(Known::form(by_elliptic(&scale, -squared)?, Some(motion))));
         }
         let quarter = elliptic(squared.clone())?;
         let [sn, ..] = jacobi(&(&scale * &time() + quarter), &squared)?;

@@ -33,6 +33,7 @@ use num_traits::{One, Zero};
 use super::expansion::{ExactSeries, expand_exactly};
 use super::joint_expansion::expand_jointly;
 use super::limit_cycle::{AmplitudeEquation, Cycle, Units, amplitude_of, chosen};
+use super::linear::is_free_and_linear;
 use super::secular::{Amplitude, Detuning, Extent, Scheme, SecularError, bounded};
 use super::{Options, Refusal, Refuser, Unsuited, first_order, first_term};
 use crate::derivation::Line;
@@ -42,7 +43,7 @@ use crate::expr::Expr;
 use crate::interrupt::Supervision;
 use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, SmallParameter, Term};
 use crate::series::taylor::TaylorError;
-use crate::solution::note::Cut;
+use crate::solution::note::{Cut, ExactBy};
 use crate::solution::{AmplitudeConvention, Definition, Law, LimitCycle, Method, Note, Solution};
 use crate::symbol::{Symbol, fresh};
 
@@ -116,7 +117,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let limit_cycle = excited
         .as_ref()
         .map(|excited| excited.limit_cycle(&perturbation, small, amplitude));
-    let mut validity = vec![perturbation.cut(small)];
+    let mut validity = vec![match is_free_and_linear(oscillator)? {
+        true => Note::Exact(ExactBy::Linear),
+        false => perturbation.cut(small),
+    }];
     if perturbation.order < asked {
         validity.push(Note::Stopped { asked });
     }

@@ -35,6 +35,25 @@ pub(super) struct Linear {
     waves: Vec<Wave>,
 }
 
+/// Whether a linear force `k x` with a constant `k` that pulls back is all there is.
+///
+/// # Errors
+/// The equation cannot be taken apart.
+pub(super) fn is_free_and_linear(oscillator: &Oscillator) -> Result<bool, Refusal> {
+    let parts = oscillator.parts()?;
+    if ![&parts.damping, &parts.forcing, &parts.inertia]
+        .into_iter()
+        .all(Expr::is_zero)
+    {
+        return Ok(false);
+    }
+    let x = Expr::from(oscillator.coordinate);
+    let stiffness = parts.restoring.differentiate(oscillator.coordinate)?.expand()?;
+    let is_all = (&parts.restoring - &(&stiffness * &x)).expand()?.is_zero();
+    let is_constant = !stiffness.contains(oscillator.coordinate);
+    Ok(is_all && is_constant && !stiffness.is_zero() && !stiffness.has_leading_minus())
+}
+
 impl Linear {
     /// `None` where a term is not linear, or a coefficient or a drive is no constant and no wave; and where nothing drives or damps.
     ///

@@ -19,6 +19,7 @@ pub(crate) mod exact;
 mod exact_motion;
 pub(crate) mod expansion;
 pub(crate) mod first_order;
+mod forced_waves;
 pub(crate) mod frequency_formula;
 mod frequency_response;
 pub(crate) mod hamiltonian;
@@ -63,7 +64,7 @@ use table::{Choice, Entry, that_take};
 
 use crate::equilibrium::{Centred, centred, stable_elsewhere};
 use crate::exact::{POLYNOMIALS, Polynomial};
-use crate::expr::{Expr, ExprError, NAMES_OF_ANSWERS, Quotation};
+use crate::expr::{Expr, ExprError, NAMES_OF_ANSWERS, Node, Quotation};
 use crate::interrupt::Supervision;
 use crate::oscillator::corner::near_rest;
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
@@ -395,6 +396,13 @@ pub enum Unsuited {
     },
 }
 
+/// Whether a function in a term depends on a coordinate and its velocity both.
+fn turns_with_both(term: &Expr) -> bool {
+    let both = |part: &Expr| part.symbols().iter().any(|name| part.contains(name.derivative()));
+    term.unique_nodes()
+        .any(|part| matches!(part.node(), Node::Function(..)) && both(part))
+}
+
 fn resonances(others: &[(u32, u32)]) -> String {
     let names: Vec<String> = others.iter().map(|(p, q)| format!("{p}:{q}")).collect();
     match names.is_empty() {
@@ -468,7 +476,7 @@ impl Unsuited {
             }
             Self::NoWave { .. } => Advice::words("in numbers any equation can be followed: `lindstedt simulate`"),
             Self::SecondDrive { .. } => Advice::words(
-                "write both as multiples of one letter or number, such as cos(W*t) and cos(3*W*t): combination resonances of frequencies without such a ratio are not derived; in numbers any equation can be followed: `lindstedt simulate`",
+                "write both as multiples of one letter or number, such as cos(W*t) and cos(3*W*t); without such a ratio the first order of a drive near omega0 is derived, where a letter such as eps makes all nonlinear terms small, none is quadratic, and the other drives are forces far from every resonance; in numbers any equation can be followed: `lindstedt simulate`",
             ),
             Self::ResonanceWithoutDamping { .. } => Advice::words(
                 "the amplitude grows in proportion to time, x = (F/(2*omega0))*t*sin(omega0*t) for F*cos(omega0*t); give a damping such as 2*zeta*x'",
@@ -510,9 +518,12 @@ impl Unsuited {
             Self::LowestOrder { lowest } | Self::BelowBalance { lowest } => Advice::words("try ").choose(Setting::Order(*lowest)),
             Self::SlowAmplitude => Advice::words("leave out ").choose(Setting::Amplitude(AmplitudeConvention::Initial)),
             Self::NoSteadyAmplitude => Advice::words("give numbers for the parameters, in the equation"),
-            Self::NoProjection { .. } => {
-                Advice::words("powers of x and x', their sizes and signs, and (2/pi)*atan(k*x') have one")
-            }
+            Self::NoProjection { term } => Advice::words(match turns_with_both(term.expression()) {
+                true => {
+                    "a function of x and x' together has none; in factors of their own both have one, as sgn(x)*sgn(x') for sgn(x*x'); in numbers any equation can be followed: `lindstedt simulate`"
+                }
+                false => "powers of x and x', their sizes and signs, and (2/pi)*atan(k*x') have one",
+            }),
             Self::HighestOrder { highest } => Advice::words("try ").choose(Setting::Order(*highest)),
             Self::NoSuchChoice { choice } => Advice::words(format!("it belongs to {}", that_take(*choice))),
             Self::PolynomialOnly { .. } => match refuser {
@@ -702,7 +713,9 @@ fn without_linear_force(refusal: Refusal, oscillator: &Oscillator, options: &Opt
 fn solve_as_asked(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let found = solve_in_its_coordinate(oscillator, options);
     match found.as_ref().is_err_and(base_motion::is_of_drive) {
-        true => base_motion::solve(oscillator, options).map_or(found, Ok),
+        true => base_motion::solve(oscillator, options)
+            .or_else(|| forced_waves::solve(oscillator, options))
+            .map_or(found, Ok),
         false => found,
     }
 }

@@ -177,6 +177,13 @@ pub enum Note {
         /// The motion of the base.
         base: Expr,
     },
+    /// Drives far from resonance beside the one near the linear frequency, without a ratio to it.
+    ForcedWaves {
+        /// The frequency near the linear one.
+        near: Expr,
+        /// The others.
+        far: Vec<Expr>,
+    },
     /// A linear oscillator under a drive.
     LinearDrive(LinearDrive),
     /// An order that a method chosen by default does not reach.
@@ -533,6 +540,18 @@ impl fmt::Display for Note {
             Self::HalfSwings { lost, size } => half_swings(formatter, lost, size),
             Self::Grows => formatter.write_str("the amplitude grows: energy is fed and nothing drains it"),
             Self::LinearDrive(drive) => drive.fmt(formatter),
+            Self::ForcedWaves { near, far } => {
+                let names = listed(far);
+                let distance = "far from it, its half, third, double and triple";
+                match far.len() {
+                    1 => write!(formatter, "{near} is taken to be near omega0, and {names} {distance}"),
+                    _ => write!(
+                        formatter,
+                        "{near} is taken to be near omega0, and {names} {distance}, as are their sums and differences"
+                    ),
+                }?;
+                formatter.write_str(": to leading order the motion that such a drive holds is that of the linear equation")
+            }
             Self::RelativeCoordinate {
                 relative,
                 coordinate,

@@ -360,9 +360,9 @@ impl Recurrences {
         self.weighted(&[(1.0, one), (sign, square)])
     }
 
-    /// `y' = +-u'/(1 - u^2)^(1/2)`: inverse sine and cosine.
-    fn inverse_wave(&mut self, of: usize, sign: f64, first: fn(f64) -> f64) -> usize {
-        let base = self.one_and_square(of, -1.0);
+    /// `y' = sign*u'/(1 + square*u^2)^(1/2)`: inverse sine and cosine, and the inverse hyperbolic sine.
+    fn inverse_wave(&mut self, of: usize, [sign, square]: [f64; 2], first: fn(f64) -> f64) -> usize {
+        let base = self.one_and_square(of, square);
         let root = self.emit(Operation::Power {
             base,
             exponent: 0.5,
@@ -433,8 +433,9 @@ impl Recurrences {
                 let over = self.one_and_square(u, 1.0);
                 self.quotient(u, over, 1.0, f64::atan)
             }
-            Function::Asin => self.inverse_wave(u, 1.0, f64::asin),
-            Function::Acos => self.inverse_wave(u, -1.0, f64::acos),
+            Function::Asin => self.inverse_wave(u, [1.0, -1.0], f64::asin),
+            Function::Acos => self.inverse_wave(u, [-1.0, -1.0], f64::acos),
+            Function::Asinh => self.inverse_wave(u, [1.0, 1.0], f64::asinh),
             special => return Err(RecurrenceError::Function(special.name())),
         })
     }
@@ -486,6 +487,7 @@ mod tests {
             "sinh(x) - cosh(x)*tanh(x)",
             "exp(-x^2) + log(1 + x)*sqrt(2 + x)",
             "asin(x/3) + acos(x/4)*atan(x)",
+            "asinh(2*x - 1)*x + asinh(x^2)",
             "abs(x - 3) + sgn(x)*max(x, x^2/100) + min(x, 7) + H(x)*x + H(x - 3)*(x - 3)^(3/2)",
             "(1 + x)^x + x^(7/3) + (-x)^(1/3) + (-x)^(2/3) + asin(sin(x)) + 3",
         ] {

@@ -86,8 +86,7 @@ pub fn nearest(coefficients: &[Rational]) -> Option<Singularity> {
         .map(|(k, value)| BigFloat::of_fraction(value, bits).shifted(growth.unit * k))
         .collect();
     let find = |kind: &Kind| followed(*kind, &scaled, &growth);
-    let kinds = [Kind::Quadratic, Kind::Differential, Kind::OfInverseRoot];
-    let found = each(&kinds, find).into_iter().flatten().collect();
+    let found = each(&KINDS, find).into_iter().flatten().collect();
     singularity(found, &growth, bits)
 }
 
@@ -223,6 +222,8 @@ enum Kind {
     /// Differential, of `f^(-1/2)`.
     OfInverseRoot,
 }
+
+const KINDS: [Kind; 3] = [Kind::Quadratic, Kind::Differential, Kind::OfInverseRoot];
 
 impl Kind {
     /// How many equations so many coefficients give.
@@ -678,6 +679,21 @@ fn candidates_of(polynomial: &[BigFloat], growth: &Growth) -> Vec<Complex64> {
     found
 }
 
+/// Whether every kind of approximant has found one place, the same within their errors, and the power there may be that of a square root,
+/// which all kinds meet; `seen` are the places and errors of those of `f^(-1/2)`, whose power may not be known yet.
+fn all_agree(found: &[Followed], seen: &[(Complex, f64)]) -> bool {
+    let has = |kind: Kind| found.iter().any(|own| own.kind == kind);
+    let is_root = |own: &Followed| match (own.kind, own.exponent) {
+        (Kind::Differential, Some((value, error))) => error <= WORST_POWER && (value - 0.5).abs() <= error,
+        _ => true,
+    };
+    let together = |one: &Followed| {
+        let near = |place: &Complex, error: f64| one.place.distance(place) <= one.error + error;
+        found.iter().all(|other| near(&other.place, other.error)) && seen.iter().any(|other| near(&other.0, other.1))
+    };
+    has(Kind::Quadratic) && has(Kind::Differential) && found.iter().all(|own| is_root(own) && together(own))
+}
+
 /// The nearest singularity of those that the kinds of approximants have found, with an error that covers what they differ by.
 fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Singularity> {
     /// An exponent with more error is not worth saying.
@@ -698,6 +714,11 @@ fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Sin
     };
     let zero = |own: &Followed| Some((own.place.to_f64(), own.order_of_zero()?));
     let zeros: Vec<(Complex64, f64)> = found.iter().filter_map(zero).collect();
+    let of_inverse_root = found.iter().filter(|own| own.kind == Kind::OfInverseRoot);
+    let seen: Vec<(Complex, f64)> = of_inverse_root
+        .filter(|own| own.order_of_zero().is_none() && own.error <= WORST * size_of(own))
+        .map(|own| (own.place.clone(), own.error))
+        .collect();
     let singular = |own: &Followed| !own.is_regular(&zeros) && own.error <= WORST * size_of(own);
     // What would make larger coefficients than there are is none.
     let found: Vec<(Followed, f64)> = found
@@ -749,8 +770,9 @@ fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Sin
             return None;
         }
     }
-    // Of few coefficients a singularity of no power that could be told may be one of several.
-    if exponent.is_none() && growth.sizes.last().is_none_or(|(highest, _)| *highest < MANY) {
+    // Of few coefficients a singularity of no power that could be told may be one of several, unless all kinds have found that one alone.
+    let few = growth.sizes.last().is_none_or(|(highest, _)| *highest < MANY);
+    if exponent.is_none() && few && !all_agree(&found, &seen) {
         return None;
     }
     // Powers of a logarithm, which look like a small power, and whatever shows no power at all are met slowly.
@@ -901,6 +923,50 @@ mod tests {
         );
         // The root of the series is that of the root.
         assert_eq!(found.exponent.expect("a power").value, ratio(-1, 4));
+    }
+
+    /// Of few coefficients too: pairs of all angles and powers, with a real singularity near them, at their own distance or within it.
+    #[test]
+    fn few_coefficients_say_what_is_so_or_nothing() {
+        for degree in [20, 29] {
+            for (cosine, sine) in [(3, 4), (-24, 7)] {
+                let size = (f64::from(cosine * cosine + sine * sine)).sqrt().round() as i64;
+                let cosine = ratio(i64::from(cosine), size);
+                for exponent in [ratio(1, 2), ratio(1, 3), ratio(-1, 2), ratio(1, 10)] {
+                    for beyond in [ratio(19, 5), ratio(-13, 5), ratio(12, 1)] {
+                        // (1 - 2 s cos(phi)/R + s^2/R^2)^e by n c_n = 2 cos(phi)/R (n - 1 - e) c_(n-1) - (n - 2 - 2 e) c_(n-2)/R^2
+                        let radius = ratio(5, 2);
+                        let mut pair = vec![ratio(1, 1)];
+                        for n in 1..=degree as i64 {
+                            let last = &pair[n as usize - 1];
+                            let step = ratio(2, 1) * &cosine / &radius * (ratio(n - 1, 1) - &exponent) * last;
+                            let before = match n {
+                                1 => ratio(0, 1),
+                                _ => {
+                                    let weight = ratio(n - 2, 1) - ratio(2, 1) * &exponent;
+                                    weight * &pair[n as usize - 2] / (&radius * &radius)
+                                }
+                            };
+                            pair.push((step - before) / ratio(n, 1));
+                        }
+                        let whole = times(&pair, &exponential(&ratio(1, 3), degree));
+                        let other = times(
+                            &power(&beyond, &ratio(1, 3), degree),
+                            &exponential(&ratio(-1, 4), degree),
+                        );
+                        let Some(found) = nearest(&plus(&whole, &other)) else {
+                            continue;
+                        };
+                        let true_radius = to_f64(&radius).min(to_f64(&beyond).abs());
+                        let error = (to_f64(&found.radius.value) - true_radius).abs();
+                        assert!(
+                            error <= found.radius.error,
+                            "{degree} {cosine} {exponent} {beyond}: {found:?}"
+                        );
+                    }
+                }
+            }
+        }
     }
 
     #[test]

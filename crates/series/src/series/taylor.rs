@@ -8,7 +8,7 @@
 //! w = u^r        k u_0 w_k = sum_(j=1..k) ((r + 1) j - k) u_j w_(k-j)
 //! w = exp u      k w_k = sum_(j=1..k) j u_j w_(k-j)
 //! s, c = sin u, cos u     k s_k = sum j u_j c_(k-j),  k c_k = - sum j u_j s_(k-j)
-//! w = F(u)       w' = F'(u) u'      for log, asin, acos, atan, whose derivative is algebraic
+//! w = F(u)       w' = F'(u) u'      for log, asin, acos, atan, asinh, whose derivative is algebraic
 //! ```
 //!
 //! Powers of what vanishes at the point are Laurent series, `u^-n = s^(-m n) (u_m + u_(m+1) s + ...)^-n`, and so are sums and
@@ -471,17 +471,16 @@ impl Expansion<'_> {
             Function::Tanh => self.tangent(start()?, of, -1),
             Function::Exp => self.exponential(of),
             Function::Log => self.logarithm(of, term),
-            Function::Asin | Function::Acos | Function::Atan => {
-                // 1/sqrt(1 - u^2), its negative, or 1/(1 + u^2).
-                let atan = function == Function::Atan;
-                let square = self.times(&self.product(of, of)?, &Expr::from(if atan { 1 } else { -1 }))?;
+            Function::Asin | Function::Acos | Function::Atan | Function::Asinh => {
+                // 1/sqrt(1 - u^2), its negative, 1/(1 + u^2), or 1/sqrt(1 + u^2).
+                let (sign, exponent) = match function {
+                    Function::Atan => (1, -Rational::one()),
+                    Function::Asinh => (1, crate::exact::rational::ratio(-1, 2)),
+                    _ => (-1, crate::exact::rational::ratio(-1, 2)),
+                };
+                let square = self.times(&self.product(of, of)?, &Expr::from(sign))?;
                 let mut radicand = square;
                 radicand[0] = &radicand[0] + &Expr::from(1);
-                let exponent = if atan {
-                    -Rational::one()
-                } else {
-                    crate::exact::rational::ratio(-1, 2)
-                };
                 let mut derivative = self.regular_power(&radicand, &exponent, term)?;
                 if function == Function::Acos {
                     derivative = self.times(&derivative, &Expr::from(-1))?;

@@ -56,7 +56,7 @@ use crate::numeric::period::PeriodError;
 use crate::numeric::return_map::NoLimitCycle;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Solution};
+use crate::solution::{AmplitudeConvention, Note, Solution};
 use crate::symbol::Symbol;
 use crate::trajectory::TrajectoryError;
 use crate::values::Values;
@@ -142,6 +142,13 @@ impl Verification {
     /// The verdict with what it was reached on: of a motion that changes frequency and amplitude both; of one that passes by its frequency
     /// while the motion is further off, that as well.
     pub fn verdict_in_words(&self, tolerance: f64) -> String {
+        let within = significant(100.0 * tolerance, 3);
+        self.verdict_on_both(tolerance)
+            .unwrap_or_else(|| format!("{} (|relative error| <= {within} %)", self.verdict.name()))
+    }
+
+    /// The verdict with the two numbers that it is about; `None` where the frequency alone says all of it.
+    pub fn verdict_on_both(&self, tolerance: f64) -> Option<String> {
         let verdict = self.verdict.name();
         let within = significant(100.0 * tolerance, 3);
         let said = |what: &str, error: Option<f64>| match error.map(f64::abs) {
@@ -151,17 +158,17 @@ impl Verification {
         };
         let far_off = self.max_deviation.filter(|deviation| *deviation > tolerance);
         match (&self.followed, self.verdict, far_off) {
-            (Some(followed), ..) => format!(
+            (Some(followed), ..) => Some(format!(
                 "{verdict}: {}, {}",
                 said("frequency", self.relative_error),
                 said("amplitude", followed.amplitude_error)
-            ),
-            (None, Verdict::Pass, Some(_)) => format!(
+            )),
+            (None, Verdict::Pass, Some(_)) => Some(format!(
                 "{verdict}: {}, {}",
                 said("frequency", self.relative_error),
                 said("motion", far_off)
-            ),
-            (None, ..) => format!("{verdict} (|relative error| <= {within} %)"),
+            )),
+            (None, ..) => None,
         }
     }
 }
@@ -202,6 +209,9 @@ pub enum VerificationError {
     /// A motion whose amplitude changes.
     #[error("the amplitude of the motion changes, so it has no period to be compared with")]
     NotPeriodic,
+    /// A motion under drives whose frequencies have no ratio.
+    #[error("under drives whose frequencies have no ratio no motion repeats itself, and there is none to compare with")]
+    NeverRepeats,
     /// The equation cannot be followed.
     #[error(transparent)]
     Trajectory(#[from] TrajectoryError),
@@ -348,6 +358,7 @@ pub fn judge_to(
         return in_time::judge(oscillator, solution, motion, at, tolerance);
     }
     if let Some(response) = &solution.response {
+        repeats(solution)?;
         return driven::judge(oscillator, solution, response, at, tolerance);
     }
     if let Some(moving) = off_cycle(solution, at) {
@@ -434,6 +445,15 @@ pub fn judge_to(
         followed: None,
         verdict: Verdict::of(pass),
     })
+}
+
+/// An error where the drives have frequencies without a ratio.
+fn repeats(solution: &Solution) -> Result<(), VerificationError> {
+    let apart = |note: &Note| matches!(note, Note::ForcedWaves { .. });
+    match solution.validity.iter().any(apart) {
+        true => Err(VerificationError::NeverRepeats),
+        false => Ok(()),
+    }
 }
 
 /// The question in the coordinate of its answer, where that is another one: relative to a base that moves.
@@ -660,6 +680,7 @@ pub fn motions(
         return in_time::motions(oscillator, solution, motion, at).map(Some);
     }
     if let Some(response) = &solution.response {
+        repeats(solution)?;
         return driven::motions(oscillator, solution, response, at);
     }
     if let Some(moving) = off_cycle(solution, at) {

@@ -284,6 +284,7 @@ fn similar_function(name: &str) -> Option<&'static str> {
         "arcsin" | "arsin" => "asin",
         "arccos" => "acos",
         "arctan" | "arctg" => "atan",
+        "arcsinh" | "arsinh" => "asinh",
         "fabs" | "absolute" => "abs",
         "maximum" => "max",
         "minimum" => "min",

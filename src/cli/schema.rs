@@ -6,7 +6,7 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use lindstedt::export::json::Kind;
 
-use super::{Common, Failure, Outcome, json_text, whole};
+use super::{Common, Failure, Outcome, whole};
 
 #[derive(Args)]
 pub struct Arguments {

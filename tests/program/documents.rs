@@ -296,11 +296,13 @@ fn schemas_in_files_are_those_of_the_types() {
         if generated != kind.json_schema() {
             let file = folder.join(format!("{}.json", kind.name()));
             std::fs::write(&file, generated).expect("a file that can be written");
-            panic!("{} was not what the types say; it is written anew: look at it, and test again", file.display());
+            panic!(
+                "{} was not what the types say; it is written anew: look at it, and test again",
+                file.display()
+            );
         }
     }
 }
-
 
 #[test]
 fn every_pinned_document_is_what_its_schema_says() {

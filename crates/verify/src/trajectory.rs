@@ -416,7 +416,12 @@ impl Trajectory {
         }
         // Compiled once: the account takes the energy and its terms at two thousand times.
         let value = self.compiled(&energy.value)?;
-        let parts: Vec<_> = energy.value.terms().iter().filter_map(|part| self.compiled(part)).collect();
+        let parts: Vec<_> = energy
+            .value
+            .terms()
+            .iter()
+            .filter_map(|part| self.compiled(part))
+            .collect();
         let count = self.course.rates.states.len();
         let at = |time: f64| {
             let state = self.all_at(time)?;
@@ -450,7 +455,9 @@ impl Trajectory {
     /// An expression as a function of the time and the states, at the values of this motion; `None` where a name has no value.
     fn compiled(&self, expression: &Expr) -> Option<impl Fn(f64, &[f64]) -> f64> {
         let states = &self.course.rates.states;
-        let moving: Vec<Symbol> = std::iter::once(Symbol::new("t")).chain(states.iter().copied()).collect();
+        let moving: Vec<Symbol> = std::iter::once(Symbol::new("t"))
+            .chain(states.iter().copied())
+            .collect();
         let constant = self.course.values.iter().filter(|(name, _)| !moving.contains(name));
         let (constants, numbers): (Vec<Symbol>, Vec<f64>) = constant.map(|(name, value)| (*name, *value)).unzip();
         let function = CompiledFunction::new(expression, &[moving, constants].concat()).ok()?;

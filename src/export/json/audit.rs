@@ -1,7 +1,6 @@
 //! Kind `audit`: claims of a publication, computed again.
 
 #[cfg(feature = "schema")]
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

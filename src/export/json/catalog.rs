@@ -1,11 +1,10 @@
 //! Kind `catalog`: the classical oscillators.
 
 #[cfg(feature = "schema")]
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Kind};
+use super::Kind;
 use crate::catalog::{self, CATALOG};
 
 /// The classical oscillators that the program knows by name.

@@ -1,7 +1,6 @@
 //! Kind `comparison`: every method on one equation.
 
 #[cfg(feature = "schema")]
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

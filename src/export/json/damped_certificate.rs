@@ -3,7 +3,6 @@
 //! Every number is text, as in the certificate of a conservative motion, from which it is told by `ode`.
 
 #[cfg(feature = "schema")]
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -98,7 +97,10 @@ pub struct DriveDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "CertificateFormulaOfCycle"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "CertificateFormulaOfCycle")
+)]
 pub struct DampedFormulaDocument {
     /// The law as it was derived: of a cycle `omega = ...` or `omega^2 = ...`, with a drive `x = ...` in t, with definitions of letters behind
     /// commas; it has to give `omega`, with a drive `c` and `s`, at `values` to the last digits. What is of another form is words: nothing is

@@ -1,7 +1,6 @@
 //! Kind `friction`: equation (6) beside Coulomb's law.
 
 #[cfg(feature = "schema")]
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -6,7 +6,12 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::Value;
 
-use super::{AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument, DampedCertificateDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument, Kind, LagrangianDocument, MaterialsDocument, MotionDocument, MotionSweepDocument, OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument, SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument};
+use super::{
+    AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument, DampedCertificateDocument,
+    FrictionDocument, ImpactComparisonDocument, ImpactDocument, Kind, LagrangianDocument, MaterialsDocument,
+    MotionDocument, MotionSweepDocument, OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
+    SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument,
+};
 use crate::solution::Method;
 
 impl Kind {
@@ -93,4 +98,3 @@ fn in_one_line(schema: &mut Value) {
 pub(super) fn methods(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "string", "enum": Method::ALL.map(Method::name) })
 }
-

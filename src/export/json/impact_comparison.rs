@@ -1,7 +1,6 @@
 //! Kind `impact-comparison`: every method on one impact.
 
 #[cfg(feature = "schema")]
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,6 @@
 //! Kind `lagrangian`: equations of motion from energies.
 
 #[cfg(feature = "schema")]
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,6 @@
 //! Kind `materials`: the same swing against barriers of several materials.
 
 #[cfg(feature = "schema")]
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,6 @@
 //! Kind `motion`: any equation or mechanism followed from its start.
 
 #[cfg(feature = "schema")]
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -4,7 +4,6 @@
 //! a process that is killed at most the last line is incomplete; it is left out where the record is read.
 
 #[cfg(feature = "schema")]
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;

@@ -1,7 +1,6 @@
 //! Kinds `primary` and `primary-sweep`: a main mass that carries the pendulum and its barriers.
 
 #[cfg(feature = "schema")]
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

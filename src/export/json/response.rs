@@ -1,7 +1,6 @@
 //! Kind `response`: all steady states of an oscillator, driven or self-excited, with their stability.
 
 #[cfg(feature = "schema")]
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

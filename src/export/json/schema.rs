@@ -1,6 +1,5 @@
 //! The kinds of documents and the JSON Schema of each.
 
-use serde_json::Value;
 
 use super::{JsonError, unexpected};
 

@@ -1,7 +1,6 @@
 //! Kind `simulation`: one run of equation (7).
 
 #[cfg(feature = "schema")]
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,6 @@
 //! Kind `stability`: transition curves of a linear equation with periodic coefficients.
 
 #[cfg(feature = "schema")]
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

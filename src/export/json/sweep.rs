@@ -3,7 +3,6 @@
 use std::io;
 
 #[cfg(feature = "schema")]
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize, Serializer};
 

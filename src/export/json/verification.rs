@@ -2,7 +2,6 @@
 //! the followed motion, the range, the verdict.
 
 #[cfg(feature = "schema")]
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -62,7 +62,7 @@ impl Expr {
 impl Expr {
     /// A root of a sum with the number before it under it, where rounded numbers stand there then, of fifteen digits:
     /// `sqrt(1.27901878616664 + A^2)` for `1e-14*sqrt(1.27901878616664e28 + ...)`, as which the normal form has it. For reading alone.
-    pub(crate) fn with_number_under_root(&self) -> Option<Self> {
+    pub fn with_number_under_root(&self) -> Option<Self> {
         /// A fraction with more signs than this must be a rounded number.
         const MANY: usize = 16;
         const DIGITS: usize = 15;

@@ -10,7 +10,6 @@
 //!
 //! A motion that turns back where s is zero touches the section and does not cross it, on whichever side rounding leaves it there.
 
-
 use super::{Trajectory, TrajectoryError};
 use crate::expr::Expr;
 use crate::mechanics::Rates;

@@ -59,12 +59,13 @@
 
 #![warn(missing_docs)]
 
+mod symbol;
+
 mod interrupt;
 mod parallel;
 
 pub mod numeric;
 mod spelling;
-mod symbol;
 
 pub mod genetic;
 

@@ -373,6 +373,7 @@ pub struct Transient {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn solution(solution: &Solution, verification: Option<&verify::Verification>) -> SolutionDocument {
+    let _letters = solution.letters().in_force();
     let optional = |law: Option<&exact::Polynomial>| law.map(|law| Polynomial::of(law, solution));
     let definitions = solution.definitions.iter();
     SolutionDocument {

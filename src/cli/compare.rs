@@ -80,7 +80,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     };
     let passed = comparison.rows.iter().all(|row| row.verdict == Some(Verdict::Pass));
     let of_letters = comparison.rows.first();
-    let of_letters = of_letters.map(|row| notes_on_letters(&letters, coordinate, &row.solution));
+    let of_letters = of_letters.map(|row| notes_on_letters(&letters, coordinate, &row.solution, true));
     let notes = notes.into_iter().chain(of_letters.into_iter().flatten());
     let notes: Vec<String> = notes.map(|note| format!("note: {note}")).collect();
     Ok(Outcome {

@@ -166,7 +166,7 @@ pub(super) fn solved(arguments: &Question, names: Names) -> Result<Solved, Failu
             let _letters = letters.in_force();
             let (oscillator, values, mut solution) = solve_at(oscillator, values, &options)?;
             solution.convergence = verify::converges(&solution);
-            notes.extend(notes_on_letters(&letters, coordinate, &solution));
+            notes.extend(notes_on_letters(&letters, coordinate, &solution, values.is_some()));
             solution.validity.extend(notes);
             let everywhere = verify::converges_everywhere(&solution);
             solution.validity.extend(everywhere);
@@ -387,8 +387,9 @@ pub(super) fn named(oscillator: &Oscillator, names: Names) -> Result<(Oscillator
     named.map_err(|error| Failure::advised(&error, error.help()))
 }
 
-/// Notes on the letters that an answer takes in the place of usual ones, of those that it has.
-pub(super) fn notes_on_letters(letters: &Letters, coordinate: Symbol, solution: &Solution) -> Vec<Note> {
+/// Notes on the letters that an answer takes in the place of usual ones, of those that it has; one that is
+/// judged has a frequency.
+pub(super) fn notes_on_letters(letters: &Letters, coordinate: Symbol, solution: &Solution, judged: bool) -> Vec<Note> {
     let slow = solution.modulation.as_ref();
     let begins = |slow: &Modulation| slow.release.is_some() && !slow.is_conservative();
     let released = slow.is_some_and(begins) || solution.in_time().is_some();
@@ -399,7 +400,7 @@ pub(super) fn notes_on_letters(letters: &Letters, coordinate: Symbol, solution: 
         } else if usual == harmonic.symbol() {
             solution.amplitude == harmonic
         } else {
-            solution.slow().is_none() && solution.in_time().is_none()
+            judged || solution.slow().is_none() && solution.in_time().is_none()
         }
     };
     let unusual = letters.unusual().filter(|(usual, _)| stands(*usual));

@@ -625,7 +625,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         .chain([&oscillator.coordinate])
         .find(|name| NAMES_OF_ANSWERS.contains(&name.name()) && !name.is_apart())
     {
-        return Err(Refusal::NameOfAnswer(*name));
+        return Err(Refusal::NameOfAnswer(name.apart()));
     }
     let _letters = oscillator.letters().in_force();
     let solution =

@@ -124,7 +124,7 @@ pub enum Refusal {
     #[error(transparent)]
     Oscillator(#[from] OscillatorError),
     /// A parameter with the name of something in the answer.
-    #[error("the parameter `{0}` has the name of the amplitude or the frequency in the answer")]
+    #[error("`{0}` in the equation has the name of the amplitude or the frequency in the answer")]
     NameOfAnswer(Symbol),
     /// The method is not for this equation, or not for what was asked of it.
     #[error("{refuser} {reason}")]

@@ -15,7 +15,7 @@ use lindstedt::{Interrupt, Method, Options, Oscillator, Progress, Solution, Supe
 use num_traits::Signed as _;
 
 use super::answer::{Answer, no_such};
-use super::derive::{self, Question};
+use super::derive::{self, Names, Question, Solved};
 use super::files::width;
 use super::progress::{PROGRESS, with_progress};
 use super::{Common, Failure, Format, Outcome, STOP, json_text, read_at_most, tolerance};
@@ -71,7 +71,12 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         ));
     }
     derive::with_motion(&arguments.question, &[("a certificate", true)])?;
-    let (oscillator, values, solution) = derive::solved(&arguments.question)?;
+    let Solved {
+        oscillator,
+        values,
+        solution,
+        ..
+    } = derive::solved(&arguments.question, Names::Changed)?;
     let values = values.unwrap_or_default();
     // A proof of a driven motion is of the steady one alone, whose formula is that of slow equations.
     let solution = match solution.in_time() {

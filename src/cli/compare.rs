@@ -10,7 +10,8 @@ use lindstedt::{Oscillator, verify};
 
 use super::answer::{Answer, no_such};
 use super::derive::{
-    exact_values, formula, notes_on_names, oscillator, renamed, with_known_equilibrium, with_new_names,
+    Names, exact_values, formula, named, notes_on_letters, notes_on_names, oscillator, with_known_equilibrium,
+    with_new_names,
 };
 use super::problem::problem;
 use super::{Common, Failure, Format, Outcome, files, json_text, tolerance};
@@ -37,7 +38,10 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Compare)?;
-    let (oscillator, renamed) = renamed(&oscillator(&formula, arguments.about.as_deref())?)?;
+    let (oscillator, renamed) = named(&oscillator(&formula, arguments.about.as_deref())?, Names::Kept)?;
+    let letters = oscillator.letters();
+    let _letters = letters.in_force();
+    let coordinate = oscillator.coordinate;
     let values = exact_values(&arguments.at, problem.values_of_motion())?;
     let values = values
         .map(|values| with_new_names(values, &renamed, &oscillator))
@@ -75,7 +79,10 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         },
     };
     let passed = comparison.rows.iter().all(|row| row.verdict == Some(Verdict::Pass));
-    let notes: Vec<String> = notes.iter().map(|note| format!("note: {note}")).collect();
+    let of_letters = comparison.rows.first();
+    let of_letters = of_letters.map(|row| notes_on_letters(&letters, coordinate, &row.solution, true));
+    let notes = notes.into_iter().chain(of_letters.into_iter().flatten());
+    let notes: Vec<String> = notes.map(|note| format!("note: {note}")).collect();
     Ok(Outcome {
         verdict: Some(Verdict::of(passed)),
         note: (!notes.is_empty()).then(|| notes.join("\n")),

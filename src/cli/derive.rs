@@ -7,12 +7,12 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lindstedt::Values;
 use lindstedt::catalog::nearest;
 use lindstedt::export::{code, html, json, latex, text};
-use lindstedt::expr::parse_expression;
+use lindstedt::expr::{Letters, parse_expression};
 use lindstedt::method::table::{Choice, Entry, that_take};
 use lindstedt::method::{self, Options, Refusal, Unsuited};
 use lindstedt::problem::{Formula, Order, Problem, ProblemError, Reader};
 use lindstedt::report;
-use lindstedt::solution::{AmplitudeConvention, Counts, Degrees, Method, Note, Solution};
+use lindstedt::solution::{AmplitudeConvention, Counts, Degrees, Method, Modulation, Note, Solution};
 use lindstedt::verify::{self, VerificationError};
 use lindstedt::{Interrupt, Oscillator, Progress, Supervision, Symbol};
 
@@ -117,11 +117,31 @@ fn order(text: &str) -> Result<Order, String> {
     }
 }
 
+/// An answer, with the equation that it is of and the values that are left once those that the equation needs stand in it.
+pub(super) struct Solved {
+    pub oscillator: Oscillator,
+    pub values: Option<Values>,
+    pub solution: Solution,
+    /// The letters of the answer.
+    pub letters: Letters,
+}
+
+/// How the names of an equation are kept from those of its answer.
+#[derive(Clone, Copy)]
+pub(super) enum Names {
+    /// The equation keeps its names, the answer takes others.
+    Kept,
+    /// The equation is written with other names.
+    Changed,
+}
+
 /// The answer to a question, with the oscillator and the values that are left once those that the equation needs stand in it.
-pub(super) fn solved(arguments: &Question) -> Result<(Oscillator, Option<Values>, Solution), Failure> {
+pub(super) fn solved(arguments: &Question, names: Names) -> Result<Solved, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Derive)?;
-    let (oscillator, renamed) = renamed(&oscillator(&formula, arguments.about.as_deref())?)?;
+    let (oscillator, renamed) = named(&oscillator(&formula, arguments.about.as_deref())?, names)?;
+    let letters = oscillator.letters();
+    let _letters = letters.in_force();
     let options = options(arguments, &formula, &oscillator)?;
     // The name is refused here, for a method that has no use for it would pass over it.
     if options.small.is_some() {
@@ -133,7 +153,8 @@ pub(super) fn solved(arguments: &Question) -> Result<(Oscillator, Option<Values>
     let values = values
         .map(|values| with_new_names(values, &renamed, &oscillator))
         .transpose()?;
-    let notes = notes_on_names(&oscillator, values.as_ref(), &renamed);
+    let mut notes = notes_on_names(&oscillator, values.as_ref(), &renamed);
+    let coordinate = oscillator.coordinate;
     let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
     let options = match &values {
         Some(values) => method::with_resonance_at(&oscillator, &options, values)
@@ -142,12 +163,19 @@ pub(super) fn solved(arguments: &Question) -> Result<(Oscillator, Option<Values>
     };
     with_progress("of the calculation", || {
         on_threads(arguments.jobs, || {
-            let mut derived = solve_at(oscillator, values, &options)?;
-            derived.2.convergence = verify::converges(&derived.2);
-            derived.2.validity.extend(notes);
-            let everywhere = verify::converges_everywhere(&derived.2);
-            derived.2.validity.extend(everywhere);
-            Ok(derived)
+            let _letters = letters.in_force();
+            let (oscillator, values, mut solution) = solve_at(oscillator, values, &options)?;
+            solution.convergence = verify::converges(&solution);
+            notes.extend(notes_on_letters(&letters, coordinate, &solution, values.is_some()));
+            solution.validity.extend(notes);
+            let everywhere = verify::converges_everywhere(&solution);
+            solution.validity.extend(everywhere);
+            Ok(Solved {
+                oscillator,
+                values,
+                solution,
+                letters,
+            })
         })
     })
 }
@@ -161,7 +189,7 @@ pub(super) fn needed(solution: &Solution, values: &Values) -> Result<(), Failure
 fn unjudged(error: &VerificationError) -> Failure {
     match error {
         VerificationError::Unknown { name, known } => {
-            let near = nearest(name.name(), known.iter().map(|known| known.name()));
+            let near = nearest(name.written(), known.iter().map(|known| known.written()));
             let help = near.map(|near| format!("\n  help: did you mean `{near}`?"));
             Failure::Usage(format!("--at: {error}{}", help.unwrap_or_default()))
         }
@@ -197,7 +225,13 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         ("--format svg", arguments.common.format() == Format::Svg),
     ];
     with_motion(&arguments.question, &of_motion)?;
-    let (oscillator, values, solution) = solved(&arguments.question)?;
+    let Solved {
+        oscillator,
+        values,
+        solution,
+        letters,
+    } = solved(&arguments.question, Names::Kept)?;
+    let _letters = letters.in_force();
     let tolerance = tolerance(&arguments.common);
     let judged = values.is_some() || arguments.common.draws() || arguments.common.tolerance.is_some();
     let verification = match judged {
@@ -350,11 +384,39 @@ pub(super) fn oscillator(formula: &Formula, about: Option<&str>) -> Result<Oscil
     }
 }
 
-/// The oscillator with other names for the parameters that bear the name of something in an answer, and what was renamed.
-pub(super) fn renamed(oscillator: &Oscillator) -> Result<(Oscillator, Vec<(Symbol, Symbol)>), Failure> {
-    oscillator
-        .with_names_of_answers_free()
-        .map_err(|error| Failure::advised(&error, error.help()))
+/// The oscillator with the names of its equation that are those of something in an answer kept apart, or with other names for them, and
+/// what was renamed.
+pub(super) fn named(oscillator: &Oscillator, names: Names) -> Result<(Oscillator, Vec<(Symbol, Symbol)>), Failure> {
+    let named = match names {
+        Names::Kept => oscillator.with_own_names_apart().map(|oscillator| (oscillator, vec![])),
+        Names::Changed => oscillator.with_names_of_answers_free(),
+    };
+    named.map_err(|error| Failure::advised(&error, error.help()))
+}
+
+/// Notes on the letters that an answer takes in the place of usual ones, of those that it has; one that is
+/// judged has a frequency.
+pub(super) fn notes_on_letters(letters: &Letters, coordinate: Symbol, solution: &Solution, judged: bool) -> Vec<Note> {
+    let slow = solution.modulation.as_ref();
+    let begins = |slow: &Modulation| slow.release.is_some() && !slow.is_conservative();
+    let released = slow.is_some_and(begins) || solution.in_time().is_some();
+    let [start, harmonic] = [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic];
+    let stands = |usual: Symbol| {
+        if usual == start.symbol() {
+            solution.amplitude == start || released
+        } else if usual == harmonic.symbol() {
+            solution.amplitude == harmonic
+        } else {
+            judged || solution.slow().is_none() && solution.in_time().is_none()
+        }
+    };
+    let unusual = letters.unusual().filter(|(usual, _)| stands(*usual));
+    let note = |(usual, written): (Symbol, Symbol)| Note::OtherLetter {
+        usual,
+        written,
+        is_coordinate: usual.name() == coordinate.name(),
+    };
+    unusual.map(note).collect()
 }
 
 /// Notes on the names of parameters: those that are written otherwise, and those without a value that look like something
@@ -373,14 +435,19 @@ pub(super) fn notes_on_names(
     renamed.chain(misleading).collect()
 }
 
-/// The values of renamed parameters under their new names. Where nothing drives the motion a value of `A` is that of the amplitude.
+/// The values under the names that they are meant for, those of renamed parameters under their new ones. Where nothing drives the motion a value of `A` is that of the amplitude.
 pub(super) fn with_new_names(
     values: Values,
     renamed: &[(Symbol, Symbol)],
     oscillator: &Oscillator,
 ) -> Result<Values, Failure> {
     let driven = oscillator.force.contains(Symbol::new("t"));
-    let mut renamed_values = values;
+    let mut renamed_values = Values::default();
+    for (name, value) in values.iter() {
+        renamed_values
+            .insert(oscillator.meant(name), value.clone())
+            .map_err(|error| Failure::Usage(format!("--at: {error}")))?;
+    }
     for (typed, written) in renamed {
         if typed.name() == "A" && !driven || renamed_values.get(*written).is_some() {
             continue;
@@ -585,7 +652,7 @@ fn picture(oscillator: &Oscillator, solution: &Solution, values: &Values) -> Res
     let caption = format!("{}; {}", solution.equation, at.join(", "));
     let label = solution.title();
     let figure = MotionFigure {
-        coordinate: oscillator.coordinate.name(),
+        coordinate: oscillator.coordinate.written(),
         displacement_unit: "",
         time_unit: "",
         formula_label: &label,

@@ -72,7 +72,7 @@ impl Language {
 pub enum NoCode {
     /// The frequency is solved for.
     #[error("no program: {0}")]
-    SolvedByNumbers(&'static str),
+    SolvedByNumbers(String),
     /// It has no frequency at the values.
     #[error("no program: the formula has no motion at these values{}", .0.as_ref().map_or(String::new(), |reason| format!(": {reason}")))]
     NoMotion(Option<String>),
@@ -127,6 +127,7 @@ pub fn solution(
     tolerance: f64,
     language: Language,
 ) -> Result<String, NoCode> {
+    let _letters = solution.letters().in_force();
     let program = program::of_solution(oscillator, solution, verification, tolerance)?;
     writer::source(&program, language.syntax())
 }
@@ -263,7 +264,7 @@ enum Statement {
     /// From here on the size of an argument stands for it.
     Size(Symbol),
     /// Without this being positive there is no value, for the reason given; what the value is computed with is the second.
-    Positive(Symbol, Symbol, &'static str),
+    Positive(Symbol, Symbol, String),
 }
 
 /// What is computed.

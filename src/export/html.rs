@@ -190,7 +190,7 @@ impl Body<'_> {
             | Block::Detail(words)
             | Block::Closing(words) => paragraph(words),
             Block::Unknowns(names) => {
-                let names: Vec<&str> = names.iter().map(|name| name.name()).collect();
+                let names: Vec<&str> = names.iter().map(|name| name.written()).collect();
                 paragraph(&format!("for {}:", names.join(", ")))
             }
             Block::Entries { heading: of, entries } => heading(of) + &definitions("long", entries),

@@ -29,6 +29,7 @@ use crate::report::{self, Block, Document};
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
 use crate::solution::{Solution, Sum, long_fraction};
+use crate::symbol::letters::{FREQUENCY, of_frequency};
 use crate::verify::comparison::{Comparison, Refused};
 use crate::verify::{DEFAULT_TOLERANCE, Verdict, Verification};
 
@@ -98,6 +99,7 @@ pub fn typed(text: &str) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn solution(solution: &Solution, verification: Option<&Verification>) -> String {
+    let _letters = solution.letters().in_force();
     // What a verdict is reached on is said with the tolerance that is usual.
     document(&report::solution(solution, verification, DEFAULT_TOLERANCE))
 }
@@ -196,6 +198,7 @@ pub fn mechanism(study: &MechanismStudy) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn comparison(comparison: &Comparison) -> String {
+    let _letters = comparison.letters().in_force();
     document(&report::comparison(comparison))
 }
 
@@ -405,12 +408,13 @@ fn judged(verification: &Verification, series_of_omega: Option<f64>, tolerance: 
         true => super::text::percent(error),
         false => decimal(100.0 * error) + " %",
     });
-    let other = series_of_omega.map(|other| format!("; of the series of omega itself {} %", decimal(100.0 * other)));
+    let other =
+        series_of_omega.map(|other| format!("; of the series of {FREQUENCY} itself {} %", decimal(100.0 * other)));
     format!(
-        "true omega {}, relative error {} (by {}{}), verdict {}",
+        "true {FREQUENCY} {}, relative error {} (by {}{}), verdict {}",
         decimal(verification.true_frequency),
         error.as_deref().unwrap_or("none"),
-        verification.judged_on,
+        of_frequency(verification.judged_on),
         other.unwrap_or_default(),
         verification
             .verdict_on_both(tolerance)
@@ -455,7 +459,7 @@ fn motion(solution: &Solution) -> Vec<String> {
 /// What the angle of a motion is.
 fn angle(solution: &Solution) -> String {
     let Some(slow) = solution.slow() else {
-        return "\\omega t".to_owned();
+        return format!("{} t", symbol(FREQUENCY));
     };
     let phase = Expr::from(slow.phase);
     let Some(resonance) = &slow.resonance else {

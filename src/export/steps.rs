@@ -11,6 +11,7 @@ use crate::expr::Expr;
 use crate::series::FourierSeries;
 use crate::series::terms;
 use crate::solution::{Counts, Solution};
+use crate::symbol::letters::FREQUENCY;
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
 /// Whether everything stands in units of omega, and `p` marks the orders.
@@ -45,6 +46,7 @@ fn indexed(letter: &str, order: u32) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn text(solution: &Solution) -> String {
+    let _letters = solution.letters().in_force();
     if solution.steps.is_empty() && solution.derivation.is_empty() {
         return String::new();
     }
@@ -56,16 +58,16 @@ pub fn text(solution: &Solution) -> String {
         let frame = match is_homotopy(solution) {
             true => [
                 format!(
-                    "{name} = {unit}*({y}0 + {p}*{y}1 + {p}^2*{y}2 + ...), {phase} = omega*t, derivatives in {phase}"
+                    "{name} = {unit}*({y}0 + {p}*{y}1 + {p}^2*{y}2 + ...), {phase} = {FREQUENCY}*t, derivatives in {phase}"
                 ),
                 format!(
-                    "{omega0}^2 = omega^2*(1 - {p}*{w}1 - {p}^2*{w}2 - ...); the nonlinear terms stand at {p}, all in units of omega^2"
+                    "{omega0}^2 = {FREQUENCY}^2*(1 - {p}*{w}1 - {p}^2*{w}2 - ...); the nonlinear terms stand at {p}, all in units of {FREQUENCY}^2"
                 ),
             ],
             false => [
-                format!("{name} = {unit}*({y}0 + {y}1 + {y}2 + ...), {phase} = omega*t, derivatives in {phase}"),
+                format!("{name} = {unit}*({y}0 + {y}1 + {y}2 + ...), {phase} = {FREQUENCY}*t, derivatives in {phase}"),
                 format!(
-                    "omega^2 = {omega0}^2*(1 + {w}1 + {w}2 + ...); each order carries its power of the small parameter"
+                    "{FREQUENCY}^2 = {omega0}^2*(1 + {w}1 + {w}2 + ...); each order carries its power of the small parameter"
                 ),
             ],
         };
@@ -180,6 +182,7 @@ fn condition_as_text(condition: Condition, y: &str, phase: Symbol) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn latex(solution: &Solution) -> String {
+    let _letters = solution.letters().in_force();
     match rows(solution) {
         rows if rows.is_empty() => String::new(),
         rows => format!("\\begin{{align*}}\n{}\n\\end{{align*}}\n", rows.join(" \\\\\n")),
@@ -190,22 +193,22 @@ pub fn latex(solution: &Solution) -> String {
 pub(super) fn rows(solution: &Solution) -> Vec<String> {
     let mut lines = Vec::new();
     if !solution.steps.is_empty() {
-        let (name, unit) = (symbol(solution.coordinate()), symbol(unit(solution)));
+        let (name, unit, omega) = (symbol(solution.coordinate()), symbol(unit(solution)), symbol(FREQUENCY));
         let [y, w] = letters(solution);
         let [p, omega0] = [fresh("p", &solution.names()), solution.linear_frequency_name()].map(symbol);
         let ([y0, y1, y2], [w1, w2]) = ([0, 1, 2].map(|n| indexed(&y, n)), [1, 2].map(|n| indexed(&w, n)));
         let (motion, squared) = match is_homotopy(solution) {
             true => (
                 format!("{y0} + {p} {y1} + {p}^{{2}} {y2} + \\dots"),
-                format!("{omega0}^{{2}} &= \\omega^{{2}} \\left(1 - {p} {w1} - {p}^{{2}} {w2} - \\dots\\right)"),
+                format!("{omega0}^{{2}} &= {omega}^{{2}} \\left(1 - {p} {w1} - {p}^{{2}} {w2} - \\dots\\right)"),
             ),
             false => (
                 format!("{y0} + {y1} + {y2} + \\dots"),
-                format!("\\omega^{{2}} &= {omega0}^{{2}} \\left(1 + {w1} + {w2} + \\dots\\right)"),
+                format!("{omega}^{{2}} &= {omega0}^{{2}} \\left(1 + {w1} + {w2} + \\dots\\right)"),
             ),
         };
         lines.push(format!(
-            "{name} &= {unit} \\left({motion}\\right), \\qquad {} = \\omega t",
+            "{name} &= {unit} \\left({motion}\\right), \\qquad {} = {omega} t",
             symbol(solution.phase())
         ));
         lines.push(squared);

@@ -19,6 +19,7 @@ use crate::report::{self, Block, Document};
 use crate::series::terms;
 use crate::solution::{Method, Solution, constant_in_words};
 use crate::symbol::Symbol;
+use crate::symbol::letters::{FREQUENCY, of_frequency};
 use crate::verify::comparison::Comparison;
 use crate::verify::{Followed, Verification};
 
@@ -55,6 +56,7 @@ fn size_in_percent(size: f64) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn solution(solution: &Solution, verification: Option<&Verification>, tolerance: f64) -> String {
+    let _letters = solution.letters().in_force();
     document(&report::solution(solution, verification, tolerance), usize::MAX)
 }
 
@@ -71,6 +73,7 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>, tolera
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn comparison(comparison: &Comparison, width: usize) -> String {
+    let _letters = comparison.letters().in_force();
     document(&report::comparison(comparison), width)
 }
 
@@ -203,7 +206,7 @@ impl Page {
             Block::Equality { left, right } => format!("  {left} = {right}\n"),
             Block::Line(line) => format!("  {line}\n"),
             Block::Unknowns(names) => {
-                let names: Vec<&str> = names.iter().map(|name| name.name()).collect();
+                let names: Vec<&str> = names.iter().map(|name| name.written()).collect();
                 format!("  for {}:\n", names.join(", "))
             }
             Block::CycleAmplitude { symbol, amplitude } => {
@@ -217,11 +220,11 @@ impl Page {
                 let width = section
                     .iter()
                     .filter_map(name_of_value)
-                    .map(|name| name.name().len())
+                    .map(|name| name.written().len())
                     .max();
                 let source = source.map_or(String::new(), |source| format!("   ({source})"));
                 let width = width.unwrap_or(0);
-                format!("  {:<width$} = {}{source}\n", name.name(), decimal(*value))
+                format!("  {:<width$} = {}{source}\n", name.written(), decimal(*value))
             }
             Block::Judged {
                 verification,
@@ -321,7 +324,7 @@ fn motion(solution: &Solution) -> String {
 /// What the angle of a motion is.
 fn angle(solution: &Solution) -> String {
     let Some(slow) = solution.slow() else {
-        return "omega*t".to_owned();
+        return format!("{FREQUENCY}*t");
     };
     let phase = slow.phase;
     let Some(resonance) = &slow.resonance else {
@@ -361,7 +364,7 @@ fn followed(followed: &Followed) -> Vec<(&'static str, String)> {
 /// The verdict, number by number.
 fn judged(verification: &Verification, series_of_omega: Option<f64>, hbar: Symbol, tolerance: f64) -> String {
     let (heading, facts) = judgement(verification, series_of_omega, hbar, tolerance);
-    let line = |(name, value): (&str, String)| format!("  {name:<20}{value}\n");
+    let line = |(name, value): (String, String)| format!("  {name:<20}{value}\n");
     facts.into_iter().fold(heading + "\n", |text, fact| text + &line(fact))
 }
 
@@ -371,7 +374,7 @@ pub(super) fn judgement(
     series_of_omega: Option<f64>,
     hbar: Symbol,
     tolerance: f64,
-) -> (String, Vec<(&'static str, String)>) {
+) -> (String, Vec<(String, String)>) {
     /// Of the frequency: no order that there is takes such an error into the last digits at once.
     const LARGE: f64 = 1e-5;
     let at = verification.at.iter();
@@ -383,7 +386,7 @@ pub(super) fn judgement(
         false => format!("Judged against the true motion at {}", at.join(", ")),
     };
     let mut facts = Vec::new();
-    let mut line = |name: &'static str, value: String| facts.push((name, value));
+    let mut line = |name: &str, value: String| facts.push((name.to_owned(), value));
     let reason = || {
         verification
             .reason
@@ -391,18 +394,18 @@ pub(super) fn judgement(
             .map(ToString::to_string)
             .unwrap_or_default()
     };
-    line("omega", verification.frequency.map_or_else(reason, decimal));
-    line("true omega", decimal(verification.true_frequency));
+    line(FREQUENCY.written(), verification.frequency.map_or_else(reason, decimal));
+    line(&format!("true {FREQUENCY}"), decimal(verification.true_frequency));
     if let Some(error) = verification.relative_error {
         line("relative error", percent(error));
     }
     let judged_on = match series_of_omega {
         Some(other) if other.is_finite() => format!(
-            "the root of omega^2; the series of omega itself errs by {}",
+            "the root of {FREQUENCY}^2; the series of {FREQUENCY} itself errs by {}",
             percent(other)
         ),
-        Some(_) => "the root of omega^2; the series of omega itself has no value".to_owned(),
-        None => verification.judged_on.to_owned(),
+        Some(_) => format!("the root of {FREQUENCY}^2; the series of {FREQUENCY} itself has no value"),
+        None => of_frequency(verification.judged_on),
     };
     line("judged on", judged_on);
     if let Some(deviation) = verification.max_deviation {
@@ -446,7 +449,7 @@ pub(super) fn judgement(
     line("slope of the error", slope);
     for (name, value) in &verification.chosen {
         let how = if *name == hbar { " (least squared residual)" } else { "" };
-        line(name.name(), format!("{}{how}", significant(*value, 6)));
+        line(name.written(), format!("{}{how}", significant(*value, 6)));
     }
     for range in &verification.ranges {
         let mark = if range.outside { "  <- outside" } else { "" };

@@ -9,6 +9,7 @@ use crate::exact::Polynomial;
 use crate::expr::Expr;
 use crate::solution::{Modulation, Response, Solution};
 use crate::symbol::Symbol;
+use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY};
 use crate::verify::{JudgedState, Verdict, Verification};
 
 /// The document of a driven motion.
@@ -54,8 +55,8 @@ fn said<'a>(words: &str, left: impl Into<Formula>, right: impl Into<Formula>) ->
 /// The motion as a function of time.
 fn motion_in_time<'a>(solution: &'a Solution, response: &Response) -> Vec<Block<'a>> {
     let heading = match solution.equilibrium.is_zero() {
-        true => format!("Released at rest from {} = A", solution.coordinate()),
-        false => "Released at rest at the distance A from the equilibrium".to_owned(),
+        true => format!("Released at rest from {} = {AMPLITUDE}", solution.coordinate()),
+        false => format!("Released at rest at the distance {AMPLITUDE} from the equilibrium"),
     };
     let mut blocks = vec![
         Block::Heading(heading),
@@ -174,12 +175,15 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
         ));
     } else {
         let heading = |text, latex| Heading { text, latex };
+        let a = FIRST_HARMONIC.written();
+        // The names of a table live as long as the program.
+        let kept = |name: String| Symbol::new(&name).name();
         blocks.push(Block::Table {
             head: vec![
-                heading("a", "$a$"),
+                heading(a, kept(format!("${a}$"))),
                 heading("phase", "phase"),
                 heading("stable", "stable"),
-                heading("true a", "true $a$"),
+                heading(kept(format!("true {a}")), kept(format!("true ${a}$"))),
                 heading("error", "error"),
                 heading("deviation", "deviation"),
                 heading("true stable", "true stable"),
@@ -195,7 +199,7 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
     let verdict = verification.verdict.name();
     let within = significant(100.0 * tolerance, 3);
     blocks.push(Block::Note(format!(
-        "{} steady motions, {count} stable; omega = {} of the motion itself",
+        "{} steady motions, {count} stable; {FREQUENCY} = {} of the motion itself",
         verification.steady_states.len(),
         verification.frequency.map_or_else(String::new, decimal)
     )));

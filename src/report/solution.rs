@@ -281,7 +281,7 @@ fn other_cycles(cycle: &LimitCycle, solution: &Solution) -> Vec<String> {
         return vec![];
     }
     let symbol = solution.amplitude.symbol();
-    let small: Vec<&str> = solution.small_parameters().map(|name| name.name()).collect();
+    let small: Vec<&str> = solution.small_parameters().map(Symbol::written).collect();
     let head = format!(
         "cycle {} of {}; for {} -> 0:",
         cycle.number,

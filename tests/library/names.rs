@@ -399,6 +399,98 @@ fn words_replaced(text: &str, word: &str, by: &str) -> String {
     replaced
 }
 
+/// The names of an equation stand in its answer as they were typed, and the letters of the answer give way: in numbers it is the answer to
+/// the same equation with other names.
+#[test]
+fn letters_of_an_answer_give_way_to_names_of_the_equation() {
+    for (own, plain) in [
+        ("x'' + omega^2*x + A*x^3 = 0", "x'' + k^2*x + c*x^3 = 0"),
+        ("A'' + omega^2*A + a*A^3 = 0", "x'' + k^2*x + c*x^3 = 0"),
+        ("omega'' + A^2*omega + a*omega^3 = 0", "x'' + k^2*x + c*x^3 = 0"),
+    ] {
+        let typed = Oscillator::parse(own).expect("an equation");
+        assert!(solve(&typed, &Options::default()).is_err());
+        let apart = typed.with_own_names_apart().expect("names of its own");
+        let others = Oscillator::parse(plain).expect("an equation");
+        let by = |name: &str| apart.parameters.iter().copied().find(|own| own.name() == name);
+        let stiffness = by("omega").or(by("A")).expect("a parameter");
+        let nonlinear = apart.parameters.iter().copied().find(|own| *own != stiffness);
+        let nonlinear = nonlinear.expect("another one");
+        for method in Method::ALL {
+            let options = Options {
+                method: Some(method),
+                ..Options::default()
+            };
+            let (Ok(found), Ok(expected)) = (solve(&apart, &options), solve(&others, &options)) else {
+                panic!("{own} by {}", method.name());
+            };
+            let amplitude = found.amplitude.symbol();
+            let at = BTreeMap::from([(amplitude, 0.5), (stiffness, 1.5), (nonlinear, 0.75)]);
+            let found_value = evaluate(&apart, &found, &at).expect("a value").frequency_squared;
+            let at = BTreeMap::from([(amplitude, 0.5), ("k".into(), 1.5), ("c".into(), 0.75)]);
+            let expected_value = evaluate(&others, &expected, &at).expect("a value").frequency_squared;
+            assert!(
+                (found_value / expected_value - 1.0).abs() < 1e-12,
+                "{own} by {}",
+                method.name()
+            );
+            // Every name of the equation stands where it stands in the answer to the other, every letter of the answer likewise.
+            let letters = found.letters();
+            let report = text::solution(&found, None, 0.01) + &text::steps(&found);
+            let words_found = words(&report);
+            let report = text::solution(&expected, None, 0.01) + &text::steps(&expected);
+            let words_expected = words(&report);
+            let count = |words: &BTreeMap<&str, usize>, name: &str| words.get(name).copied().unwrap_or(0);
+            let primed = |name: &str| count(&words_found, name);
+            assert_eq!(
+                primed(stiffness.name()),
+                count(&words_expected, "k"),
+                "{own} by {}",
+                method.name()
+            );
+            for (letter, usual) in [(letters.amplitude, "A"), (letters.frequency, "omega")] {
+                let of_answer = primed(letter.name());
+                assert_eq!(
+                    of_answer,
+                    count(&words_expected, usual),
+                    "{letter} in {own} by {}",
+                    method.name()
+                );
+            }
+        }
+    }
+}
+
+/// Letters in force are those of the equation that was asked about, in sentences too.
+#[test]
+fn letters_stand_in_every_format() {
+    let oscillator = Oscillator::parse("x'' + omega^2*x + A*x^3 = 0").expect("an equation");
+    let apart = oscillator.with_own_names_apart().expect("names of its own");
+    let solution = solve(&apart, &Options::default()).expect("a law");
+    assert_eq!(
+        solution.formula(),
+        "Omega^2 = omega^2 + 3*A*C^2/4 - 3*A^2*C^4/(128*omega^2)"
+    );
+    let article = latex::solution(&solution, None);
+    assert!(
+        article.contains(r"\Omega^{2} &= \omega^{2} + \frac{3 A C^{2}}{4}"),
+        "{article}"
+    );
+    let document = json::solution(&solution, None);
+    assert_eq!(document.parameters, ["A", "omega"]);
+    let at = [("C", "1"), ("A", "1/10"), ("omega", "2")].map(|(name, value)| (name.into(), value.parse().unwrap()));
+    let mut values = lindstedt::Values::default();
+    for (name, value) in at {
+        values.insert(apart.meant(name), value).expect("a value");
+    }
+    let judged = lindstedt::judge(&apart, &solution, &values, 0.01).expect("a verdict");
+    let report = text::solution(&solution, Some(&judged), 0.01);
+    assert!(report.contains("at C = 1, A = 1/10, omega = 2\n  Omega  "), "{report}");
+    assert!(report.contains("within 1 % up to C = "), "{report}");
+    let read = json::read_solution(&serde_json::to_value(&document).expect("a document")).expect("a solution");
+    assert_eq!((read.law, read.displacement), (solution.law, solution.displacement));
+}
+
 /// Parameters called as the amplitude or the frequency of an answer are refused by the derivation, and taken under other names.
 #[test]
 fn parameters_with_names_of_answers_are_written_otherwise() {

@@ -5,12 +5,15 @@
 //!
 //! Five names to know: [`exact::Rational`], a fraction of integers of any length; [`exact::Ring`], the operations that a derivation
 //! needs of its coefficients; [`expr::Expr`], the tree, and [`expr::parse_equation`], its parser; [`expr::CompiledFunction`], its
-//! evaluation in numbers. Numbers and expressions share a crate because a polynomial prints as the expression that it is.
+//! evaluation in numbers. Numbers and expressions share a crate because a polynomial prints as the expression that it is; [`parallel`],
+//! pieces of work on all threads, is here because the letters of an answer go with each piece.
 
 #![warn(missing_docs)]
 
 pub mod spelling;
 pub mod symbol;
+
+pub mod parallel;
 
 pub mod exact;
 

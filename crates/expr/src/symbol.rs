@@ -3,6 +3,8 @@
 //! Every name is stored once for the life of the program, so a [`Symbol`] is a pointer and a length, copies freely and
 //! compares by its text: the normal form of an expression, and with it every printed formula, is the same on every run.
 
+pub mod letters;
+
 use std::collections::HashSet;
 use std::fmt;
 use std::sync::{LazyLock, Mutex, PoisonError};
@@ -27,6 +29,9 @@ pub const GREEK: [&str; 21] = [
     "tau", "phi", "chi", "psi", "omega", "Omega", "Lambda",
 ];
 
+/// What the text of a symbol ends with that is [apart](Symbol::apart); no name that is typed has it.
+const APART: char = '\u{1}';
+
 static NAMES: LazyLock<Mutex<HashSet<&'static str>>> = LazyLock::new(Mutex::default);
 
 impl Symbol {
@@ -43,28 +48,57 @@ impl Symbol {
 
     /// The text of the name, primes included.
     pub fn name(self) -> &'static str {
-        self.0
+        self.0.strip_suffix(APART).unwrap_or(self.0)
+    }
+
+    /// The name as it is printed: that of something in an answer gives way to the same name of an equation, see [`Letters`].
+    pub fn written(self) -> &'static str {
+        letters::written(self)
+    }
+
+    /// A symbol of the same name for something in an equation, which is not the symbol of that name in an answer.
+    ///
+    /// ```
+    /// use lindstedt::Symbol;
+    /// let (frequency, parameter) = (Symbol::new("omega"), Symbol::new("omega").apart());
+    /// assert_eq!(parameter.name(), frequency.name());
+    /// assert_ne!(parameter, frequency);
+    /// ```
+    #[must_use]
+    pub fn apart(self) -> Self {
+        Self::new(&format!("{}{APART}", self.name()))
+    }
+
+    /// Whether it is such a symbol.
+    pub fn is_apart(self) -> bool {
+        self.0.ends_with(APART)
+    }
+
+    /// The symbol of another name that is apart where this one is.
+    fn with_name(self, name: &str) -> Self {
+        let symbol = Self::new(name);
+        if self.is_apart() { symbol.apart() } else { symbol }
     }
 
     /// The time derivative of a coordinate: one more prime.
     pub fn derivative(self) -> Self {
-        Self::new(&format!("{}'", self.0))
+        self.with_name(&format!("{}'", self.name()))
     }
 
     /// How many primes the name ends with: 0 for `x`, 2 for `x''`.
     pub fn primes(self) -> usize {
-        self.0.len() - self.0.trim_end_matches('\'').len()
+        self.name().len() - self.name().trim_end_matches('\'').len()
     }
 
     /// Whether the name is that of a Greek letter, with an index or without.
     pub fn is_greek(self) -> bool {
-        let stem = self.0.trim_end_matches(|letter: char| letter.is_ascii_digit());
+        let stem = self.name().trim_end_matches(|letter: char| letter.is_ascii_digit());
         GREEK.contains(&stem.trim_end_matches('_'))
     }
 
     /// The name without its primes: the coordinate itself.
     pub fn coordinate(self) -> Self {
-        Self::new(self.0.trim_end_matches('\''))
+        self.with_name(self.name().trim_end_matches('\''))
     }
 }
 
@@ -126,13 +160,13 @@ pub fn phase_beside(taken: &[Symbol]) -> Symbol {
 
 impl fmt::Display for Symbol {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(self.0)
+        formatter.write_str(self.written())
     }
 }
 
 impl fmt::Debug for Symbol {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(self.0)
+        formatter.write_str(self.written())
     }
 }
 

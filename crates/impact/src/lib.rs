@@ -11,9 +11,9 @@
 #[doc(no_inline)]
 pub use lindstedt_dynamics::{mechanics, system};
 #[doc(no_inline)]
-pub use lindstedt_expr::{decimal, exact, expr, spelling, symbol, values};
+pub use lindstedt_expr::{decimal, exact, expr, parallel, spelling, symbol, values};
 #[doc(no_inline)]
-pub use lindstedt_numeric::{genetic, interrupt, numeric, parallel};
+pub use lindstedt_numeric::{genetic, interrupt, numeric};
 #[doc(no_inline)]
 pub use lindstedt_oscillator::{conservative, equilibrium, method, oscillator, solution};
 #[doc(no_inline)]

@@ -3,13 +3,11 @@
 //! In: a right-hand side, a start, tolerances. Out: trajectories, roots, integrals, periods, the best of a search.
 //!
 //! Five names to know: [`numeric::ode`], Runge-Kutta, roots and quadrature; [`numeric::periodic`], periodic orbits by shooting;
-//! [`genetic`], the genetic algorithm; [`parallel::each`], pieces of work on all threads; [`interrupt::Interrupt`], a request to
-//! stop.
+//! [`numeric::return_map`], limit cycles; [`genetic`], the genetic algorithm; [`interrupt::Interrupt`], a request to stop.
 
 #![warn(missing_docs)]
 
 pub mod interrupt;
-pub mod parallel;
 
 pub mod numeric;
 

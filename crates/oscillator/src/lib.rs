@@ -9,9 +9,9 @@
 #![warn(missing_docs)]
 
 #[doc(no_inline)]
-pub use lindstedt_expr::{decimal, exact, expr, symbol, values};
+pub use lindstedt_expr::{decimal, exact, expr, parallel, symbol, values};
 #[doc(no_inline)]
-pub use lindstedt_numeric::{interrupt, numeric, parallel};
+pub use lindstedt_numeric::{interrupt, numeric};
 #[doc(no_inline)]
 pub use lindstedt_series::series;
 

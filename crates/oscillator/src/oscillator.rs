@@ -26,6 +26,7 @@ use crate::expr::{
 use crate::series::taylor::{TaylorError, taylor};
 use crate::solution::note::Position;
 use crate::solution::{Advice, AmplitudeConvention, Definition, Method, Setting};
+use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, Letters};
 use crate::symbol::{Symbol, fresh, fresh_stem, phase_beside};
 use corner::near_rest;
 
@@ -478,6 +479,55 @@ impl Oscillator {
         Ok((oscillator, renamed))
     }
 
+    /// Returns the equation with the names that an answer uses for its amplitudes and its frequency, `A`, `a` and `omega`, kept
+    /// [apart](Symbol::apart) from those of the answer: the answer then writes other [`Letters`].
+    ///
+    /// # Errors
+    /// An expression beyond all limits.
+    ///
+    /// ```
+    /// use lindstedt::{Options, Oscillator, solve};
+    ///
+    /// let duffing = Oscillator::parse("x'' + omega^2*x + eps*x^3 = 0")?.with_own_names_apart()?;
+    /// let solution = solve(&duffing, &Options { order: Some(1), ..Options::default() })?;
+    /// let text = lindstedt::export::text::solution(&solution, None, 0.01);
+    /// assert!(text.contains("Omega   = omega + 3*eps*A^2/(8*omega)"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_own_names_apart(&self) -> Result<Self, OscillatorError> {
+        let of_answers = |name: &Symbol| NAMES_OF_ANSWERS.contains(&name.name());
+        let own: Vec<Symbol> = self.parameters.iter().copied().filter(of_answers).collect();
+        let coordinate = Some(self.coordinate).filter(of_answers);
+        let states = coordinate.into_iter().flat_map(|name| {
+            let velocity = name.derivative();
+            [name, velocity, velocity.derivative()]
+        });
+        let values = own.iter().copied().chain(states);
+        let values: BTreeMap<Symbol, Expr> = values.map(|name| (name, Expr::from(name.apart()))).collect();
+        let mut oscillator = self.with_values(&values)?;
+        oscillator.parameters.extend(own.into_iter().map(Symbol::apart));
+        oscillator.parameters.sort_unstable();
+        if let Some(name) = coordinate {
+            oscillator.coordinate = name.apart();
+        }
+        Ok(oscillator)
+    }
+
+    /// The letters of amplitude and frequency in what is derived from this equation: those in force on this thread, else the ones that
+    /// the equation leaves free.
+    pub fn letters(&self) -> Letters {
+        Letters::current().unwrap_or_else(|| {
+            let own: Vec<Symbol> = self.own_names().collect();
+            Letters::beside(&own, self.force.contains(Symbol::new("t")))
+        })
+    }
+
+    /// The symbol that a person means by this name: one of the equation, or else the one that is written so in the answer.
+    pub fn meant(&self, name: Symbol) -> Symbol {
+        let own: Vec<Symbol> = self.own_names().collect();
+        self.letters().meant(name, &own)
+    }
+
     /// Parameters whose names look like something else, `e` or `sinx`, each with how that would be written.
     ///
     /// ```
@@ -512,8 +562,14 @@ impl Oscillator {
     /// The names that mean something in the equation: parameters, coordinate and time. What a method introduces is named by
     /// [`fresh`] beside them.
     pub fn names(&self) -> Vec<Symbol> {
+        let letters = self.letters();
+        let letters = letters.unusual().map(|(_, written)| written);
+        self.own_names().chain(letters).collect()
+    }
+
+    fn own_names(&self) -> impl Iterator<Item = Symbol> {
         let own = [self.coordinate, Symbol::new("t")];
-        self.parameters.iter().copied().chain(own).collect()
+        self.parameters.iter().copied().chain(own)
     }
 
     /// The name of the phase in what is derived from this equation: `theta`, unless the equation has that name.
@@ -583,9 +639,9 @@ impl Oscillator {
     /// An unknown name, or several parameters that would do.
     pub fn small_parameter(&self, asked: Option<&str>) -> Result<SmallParameter, OscillatorError> {
         if let Some(name) = asked {
-            let symbol = Symbol::new(name);
-            return match name {
-                "A" | "a" => Ok(SmallParameter::Amplitude),
+            let symbol = self.meant(Symbol::new(name));
+            return match symbol {
+                AMPLITUDE | FIRST_HARMONIC => Ok(SmallParameter::Amplitude),
                 _ if self.parameters.contains(&symbol) => Ok(SmallParameter::Parameter(symbol)),
                 _ => Err(OscillatorError::UnknownParameter(symbol)),
             };
@@ -776,7 +832,7 @@ impl Oscillator {
                     (0, ..) => {
                         let small = match small {
                             SmallParameter::Parameter(name) => name.to_string(),
-                            SmallParameter::Amplitude => "A".to_owned(),
+                            SmallParameter::Amplitude => AMPLITUDE.to_string(),
                         };
                         return Err(OscillatorError::NotSmall { term: named(), small });
                     }

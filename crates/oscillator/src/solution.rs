@@ -47,6 +47,7 @@ use crate::exact::scaled::Scaled;
 use crate::exact::{Doubles, POLYNOMIALS, Polynomial, Polynomials};
 use crate::expr::{Equation, Expr};
 use crate::series::FourierSeries;
+use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY, Letters};
 use crate::symbol::{Symbol, fresh, phase_beside};
 
 /// What the amplitude in a formula measures.
@@ -84,17 +85,20 @@ impl AmplitudeConvention {
 
     /// The symbol: `A` or `a`.
     pub fn symbol(self) -> Symbol {
-        Symbol::new(match self {
-            Self::Initial => "A",
-            Self::FirstHarmonic => "a",
-        })
+        match self {
+            Self::Initial => AMPLITUDE,
+            Self::FirstHarmonic => FIRST_HARMONIC,
+        }
     }
 
     /// What the symbol is in a motion of this coordinate: `A = x(0) - equilibrium, x'(0) = 0`.
     pub fn in_words(self, coordinate: Symbol) -> String {
         match self {
-            Self::Initial => format!("A = {coordinate}(0) - equilibrium, {}(0) = 0", coordinate.derivative()),
-            Self::FirstHarmonic => "a = amplitude of the first harmonic".to_owned(),
+            Self::Initial => format!(
+                "{AMPLITUDE} = {coordinate}(0) - equilibrium, {}(0) = 0",
+                coordinate.derivative()
+            ),
+            Self::FirstHarmonic => format!("{FIRST_HARMONIC} = amplitude of the first harmonic"),
         }
     }
 }
@@ -325,9 +329,24 @@ impl Solution {
     /// The names that mean something in this answer already: parameters, coordinate, definitions, `t`. What a report introduces is
     /// named by [`fresh`] beside them.
     pub fn names(&self) -> Vec<Symbol> {
-        let own = ["t".into(), self.coordinate()];
         let defined = self.definitions.iter().map(|definition| definition.symbol);
-        self.parameters.iter().copied().chain(own).chain(defined).collect()
+        let letters = self.letters();
+        let letters = letters.unusual().map(|(_, written)| written);
+        self.names_of_equation().chain(defined).chain(letters).collect()
+    }
+
+    fn names_of_equation(&self) -> impl Iterator<Item = Symbol> {
+        let own = ["t".into(), self.coordinate()];
+        self.parameters.iter().copied().chain(own)
+    }
+
+    /// The letters of amplitude and frequency: those in force on this thread, else the ones that the equation leaves free. They are
+    /// how the symbols of this answer print while they are [in force](Letters::in_force).
+    pub fn letters(&self) -> Letters {
+        Letters::current().unwrap_or_else(|| {
+            let own: Vec<Symbol> = self.names_of_equation().collect();
+            Letters::beside(&own, self.equation.left.contains(Symbol::new("t")))
+        })
     }
 
     /// The name of the phase of the motion: `theta`, unless the equation has that name.
@@ -417,7 +436,7 @@ impl Solution {
         match self.method.counts() {
             Counts::Degrees(_) => self.degrees.unwrap_or(Degrees::Quotient(order, 0)).to_string(),
             Counts::Powers => {
-                let names: Vec<&str> = self.small_parameters().map(|symbol| symbol.name()).collect();
+                let names: Vec<&str> = self.small_parameters().map(Symbol::written).collect();
                 format!("to order {order} in {}", names.join(" and "))
             }
             Counts::PowersOfBookkeeping => format!("to order {order} in {}", fresh("p", &self.names())),
@@ -441,6 +460,7 @@ impl Solution {
 
     /// The law in one line, with the definitions it needs.
     pub fn formula(&self) -> String {
+        let _letters = self.letters().in_force();
         if let Some(slow) = self.slow() {
             let [amplitude, phase] = [slow.amplitude, slow.phase].map(Symbol::derivative);
             let rates = [&slow.amplitude_rate, &slow.phase_rate];
@@ -453,8 +473,8 @@ impl Solution {
         }
         let shown = self.law.in_one_line();
         let law = match shown {
-            Shown::Squared(law) => format!("omega^2 = {}", self.ordered(law)),
-            Shown::Frequency(law) => format!("omega = {}", self.ordered(law)),
+            Shown::Squared(law) => format!("{FREQUENCY}^2 = {}", self.ordered(law)),
+            Shown::Frequency(law) => format!("{FREQUENCY} = {}", self.ordered(law)),
             Shown::Relation(relation) => format!("0 = {}", self.ordered(relation)),
             Shown::Closed(form) if self.numerical => {
                 format!("{} in closed form, with rounded coefficients", form.name())

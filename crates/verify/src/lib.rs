@@ -12,9 +12,9 @@
 #[doc(no_inline)]
 pub use lindstedt_dynamics::{mechanics, system};
 #[doc(no_inline)]
-pub use lindstedt_expr::{decimal, exact, expr, symbol, values};
+pub use lindstedt_expr::{decimal, exact, expr, parallel, symbol, values};
 #[doc(no_inline)]
-pub use lindstedt_numeric::{interrupt, numeric, parallel};
+pub use lindstedt_numeric::{interrupt, numeric};
 #[doc(no_inline)]
 pub use lindstedt_oscillator::{conservative, equilibrium, method, oscillator, solution};
 #[doc(no_inline)]

@@ -18,6 +18,7 @@ use crate::series::FourierSeries;
 use crate::solution::note::ExactBy;
 use crate::solution::{Definition, Note, Solution};
 use crate::symbol::Symbol;
+use crate::symbol::letters::{AMPLITUDE, FREQUENCY as FREQUENCY_LETTER, of_frequency};
 use crate::verify::Verification;
 
 const FREQUENCY: &str = "angular_frequency";
@@ -58,10 +59,10 @@ pub(super) fn of_solution(
             } else if !solution.displacement.is_zero() {
                 routines.extend(motion(oscillator, solution, &names, &arguments));
             }
-            remarks.extend(unseen(oscillator, solution).map(str::to_owned));
+            remarks.extend(unseen(oscillator, solution));
             remarks.extend(at_rest(solution, law));
         }
-        (Err(reason), None) => return Err(NoCode::SolvedByNumbers(reason)),
+        (Err(reason), None) => return Err(NoCode::SolvedByNumbers(reason.clone())),
         (Err(_), Some(verification)) => routines.push(constant_frequency(verification)?),
     }
     let by_numbers = formula.is_err() || (is_exact && solution.closed_motion.is_none());
@@ -166,7 +167,7 @@ impl Names {
             time: Symbol::new("t"),
             theta: solution.phase(),
             omega: Symbol::new("omega"),
-            omega_squared: fresh("omega_squared", &taken),
+            omega_squared: fresh(&format!("{FREQUENCY_LETTER}_squared"), &taken),
             shape: fresh("shape", &taken),
             slope: fresh("slope", &taken),
             digits: fresh("digits", &taken),
@@ -183,7 +184,7 @@ struct Law {
 }
 
 /// The law that is judged, or why it is no formula.
-fn formula(solution: &Solution) -> Result<Law, &'static str> {
+fn formula(solution: &Solution) -> Result<Law, String> {
     let polynomial = |law: &Polynomial, squared| Law {
         value: ordered(solution, law),
         expression: Expr::from(law),
@@ -206,11 +207,13 @@ fn formula(solution: &Solution) -> Result<Law, &'static str> {
     }
     match law.frequency() {
         Some(frequency) => Ok(polynomial(frequency, false)),
-        None if law.relation().is_some() => {
-            Err("the frequency is a root of a relation, which numbers follow from A = 0 to the amplitude")
+        None if law.relation().is_some() => Err(format!(
+            "the frequency is a root of a relation, which numbers follow from {AMPLITUDE} = 0 to the amplitude"
+        )),
+        None if law.system().is_some() => {
+            Err("the frequency is a root of several equations, which numbers solve".to_owned())
         }
-        None if law.system().is_some() => Err("the frequency is a root of several equations, which numbers solve"),
-        None => Err("the frequency is given by integrals, which numbers solve"),
+        None => Err("the frequency is given by integrals, which numbers solve".to_owned()),
     }
 }
 
@@ -283,7 +286,7 @@ fn frequency(oscillator: &Oscillator, solution: &Solution, names: &Names, law: &
             body.push(Statement::Positive(
                 names.omega_squared,
                 names.omega_squared,
-                "omega^2 is not positive: there is no frequency",
+                of_frequency("omega^2 is not positive: there is no frequency"),
             ));
             let squared = Expr::from(names.omega_squared);
             squared.sqrt().unwrap_or(squared)
@@ -294,7 +297,7 @@ fn frequency(oscillator: &Oscillator, solution: &Solution, names: &Names, law: &
             body.push(Statement::Positive(
                 names.omega,
                 names.omega,
-                "omega is not positive: there is no frequency",
+                of_frequency("omega is not positive: there is no frequency"),
             ));
             Expr::from(names.omega)
         }
@@ -302,7 +305,7 @@ fn frequency(oscillator: &Oscillator, solution: &Solution, names: &Names, law: &
     Routine {
         name: FREQUENCY,
         about: match law.squared {
-            true => "The angular frequency in radians per unit of time, the root of omega^2".to_owned(),
+            true => of_frequency("The angular frequency in radians per unit of time, the root of omega^2"),
             false => "The angular frequency in radians per unit of time".to_owned(),
         },
         arguments,
@@ -661,14 +664,14 @@ fn digits<'a>(
         Statement::Positive(
             names.digits,
             value,
-            "at so small an amplitude rounding takes the digits of the formula",
+            "at so small an amplitude rounding takes the digits of the formula".to_owned(),
         ),
     ]
 }
 
 /// What a program does not look at and the numbers of an answer do: whether there is a motion, and whether the force is defined all
 /// along it.
-fn unseen(oscillator: &Oscillator, solution: &Solution) -> Option<&'static str> {
+fn unseen(oscillator: &Oscillator, solution: &Solution) -> Option<String> {
     let in_parts = |part: &Expr| match part.node() {
         Node::Function(function, _) => {
             use Function::{Acos, Asin, Log, Tan};
@@ -687,13 +690,16 @@ fn unseen(oscillator: &Oscillator, solution: &Solution) -> Option<&'static str> 
     }
     if Entry::of(solution.method).motion == Motion::Exact {
         return Some(
-            "The program does not look whether the motion is periodic: where it is not, its numbers mean nothing.",
+            "The program does not look whether the motion is periodic: where it is not, its numbers mean nothing."
+                .to_owned(),
         );
     }
     let has_gaps = law_takes_size(oscillator, solution) && oscillator.force.unique_nodes().any(in_parts);
-    has_gaps.then_some(
-        "The program does not look whether the force is defined and finite from -A to A: where it is not, its numbers mean nothing.",
-    )
+    has_gaps.then(|| {
+        format!(
+            "The program does not look whether the force is defined and finite from -{AMPLITUDE} to {AMPLITUDE}: where it is not, its numbers mean nothing."
+        )
+    })
 }
 
 /// What is said of a formula that has no value at rest.

@@ -29,7 +29,7 @@ pub(super) fn source(program: &Program, syntax: &'static Syntax) -> Result<Strin
         text: &text,
         routines: &routines,
     });
-    let renamed = names.iter().filter(|(symbol, name)| symbol.name() != **name);
+    let renamed = names.iter().filter(|(symbol, name)| symbol.written() != **name);
     let renamed: Vec<String> = renamed
         .map(|(symbol, name)| format!("{symbol} is {name} here"))
         .collect();
@@ -103,9 +103,9 @@ fn names(program: &Program, syntax: &Syntax, functions: &BTreeSet<Function>) -> 
             called.contains(&name.as_str())
                 || syntax.reserved.contains(&name.as_str())
                 || names.values().any(|other| other == name)
-                || symbols.iter().any(|other| other != symbol && other.name() == name)
+                || symbols.iter().any(|other| other != symbol && other.written() == name)
         };
-        let mut name = symbol.name().to_owned();
+        let mut name = symbol.written().to_owned();
         while taken(&name) {
             name.push('_');
         }
@@ -221,7 +221,7 @@ impl Writer<'_> {
         self.names
             .get(&symbol)
             .cloned()
-            .unwrap_or_else(|| symbol.name().to_owned())
+            .unwrap_or_else(|| symbol.written().to_owned())
     }
 
     /// A value between two texts, in as many lines as it needs.

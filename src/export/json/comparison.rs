@@ -136,6 +136,7 @@ pub struct Reach {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn comparison(comparison: &Comparison) -> ComparisonDocument {
+    let _letters = comparison.letters().in_force();
     let applying = comparison.rows.iter().map(applying);
     ComparisonDocument {
         schema: Kind::Comparison.schema().to_owned(),

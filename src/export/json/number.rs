@@ -13,6 +13,7 @@ use crate::exact::{self, Rational};
 use crate::expr::{Expr, parse_expression};
 use crate::solution::{Solution, Sum};
 use crate::symbol::Symbol;
+use crate::symbol::letters::Letters;
 
 /// What stands under names that the equation or the program chose, in their order.
 pub type Map<T> = IndexMap<String, T>;
@@ -124,6 +125,78 @@ impl Polynomial {
             polynomial.add_term(monomial, coefficient);
         }
         Ok(polynomial)
+    }
+}
+
+/// What the names in a document stand for: the letters of an answer give way to the names of its equation.
+pub(super) struct Names {
+    own: Vec<Symbol>,
+    letters: Letters,
+}
+
+impl Names {
+    /// Those beside the names of an equation, driven or not.
+    pub fn beside(own: impl IntoIterator<Item = Symbol>, driven: bool) -> Self {
+        let own: Vec<Symbol> = own.into_iter().collect();
+        let letters = Letters::beside(&own, driven);
+        let clash = |name: &Symbol| letters.unusual().any(|(usual, _)| usual.name() == name.name());
+        let apart = |name: Symbol| if clash(&name) { name.apart() } else { name };
+        Self {
+            own: own.into_iter().map(apart).collect(),
+            letters,
+        }
+    }
+
+    /// How the frequency is written.
+    pub fn frequency(&self) -> &'static str {
+        self.letters.frequency.name()
+    }
+
+    /// The symbol of a name.
+    pub fn symbol(&self, name: &str) -> Symbol {
+        self.changed(Symbol::new(name))
+    }
+
+    fn changed(&self, name: Symbol) -> Symbol {
+        let changed = self.letters.meant(name.coordinate(), &self.own);
+        (0..name.primes()).fold(changed, |name, _| name.derivative())
+    }
+
+    fn are_usual(&self) -> bool {
+        self.letters.unusual().next().is_none()
+    }
+
+    /// An expression with the symbols of its names.
+    pub fn in_expression(&self, expression: Expr, key: &str) -> Result<Expr, JsonError> {
+        if self.are_usual() {
+            return Ok(expression);
+        }
+        let symbols = expression.symbols().into_iter();
+        let symbols = symbols.map(|name| (name, Expr::from(self.changed(name)))).collect();
+        let changed = expression.substitute_all(&symbols);
+        changed.or_else(|_| unexpected(key, "an expression"))
+    }
+
+    /// The expression of a text.
+    pub fn expression(&self, text: &str, key: &str) -> Result<Expr, JsonError> {
+        self.in_expression(expression(text, key)?, key)
+    }
+
+    /// The exact polynomial of a document.
+    pub fn polynomial(&self, polynomial: &Polynomial, key: &str) -> Result<exact::Polynomial, JsonError> {
+        let read = polynomial.exact(key)?;
+        if self.are_usual() {
+            return Ok(read);
+        }
+        let mut changed = exact::Polynomial::zero();
+        for (monomial, coefficient) in read.terms() {
+            let powers = monomial.factors().iter();
+            let monomial = powers.fold(Monomial::one(), |product, (name, power)| {
+                product.product(&Monomial::power_of(self.changed(*name), *power))
+            });
+            changed.add_term(monomial, coefficient.clone());
+        }
+        Ok(changed)
     }
 }
 

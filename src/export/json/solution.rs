@@ -5,12 +5,12 @@ use num_traits::Zero;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::number::expression;
+use super::number::Names;
 use super::verification::{Verification, verification as judged};
 use super::{Constant, JsonError, Kind, Map, Polynomial, check_kind, unexpected};
 use crate::derivation::Line;
 use crate::exact::{self, Monomial, POLYNOMIALS, Polynomials};
-use crate::expr::parse_equation;
+use crate::expr::{Equation, parse_equation};
 use crate::series::FourierSeries;
 use crate::series::singularity::{self, Singularity};
 use crate::solution::{
@@ -165,11 +165,11 @@ impl Convergence {
         }
     }
 
-    fn read(&self) -> Result<solution::Convergence, JsonError> {
+    fn read(&self, names: &Names) -> Result<solution::Convergence, JsonError> {
         let powers = self.variable.iter();
         Ok(solution::Convergence {
             variable: powers.fold(Monomial::one(), |product, (name, power)| {
-                product.product(&Monomial::power_of(Symbol::new(name), *power))
+                product.product(&Monomial::power_of(names.symbol(name), *power))
             }),
             highest: self.highest,
             nearest: Singularity {
@@ -389,6 +389,7 @@ pub struct Transient {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn solution(solution: &Solution, verification: Option<&verify::Verification>) -> SolutionDocument {
+    let _letters = solution.letters().in_force();
     let optional = |law: Option<&exact::Polynomial>| law.map(|law| Polynomial::of(law, solution));
     let definitions = solution.definitions.iter();
     SolutionDocument {
@@ -531,8 +532,8 @@ fn names(symbols: &[Symbol]) -> Vec<String> {
     symbols.iter().map(ToString::to_string).collect()
 }
 
-fn symbols(names: &[String]) -> Vec<Symbol> {
-    names.iter().map(|name| Symbol::new(name)).collect()
+fn symbols(texts: &[String], names: &Names) -> Vec<Symbol> {
+    texts.iter().map(|text| names.symbol(text)).collect()
 }
 
 impl SolutionDocument {
@@ -547,53 +548,67 @@ impl SolutionDocument {
         let (Some(method), Some(amplitude)) = (method, amplitude) else {
             return unexpected("method", "the name of a method, and `amplitude` that of a convention");
         };
+        let equation = parse_equation(&self.equation).or_else(|_| unexpected("equation", "an equation of motion"))?;
+        let time = Symbol::new("t");
+        let own = self.parameters.iter().map(|name| Symbol::new(name));
+        let driven = equation.left.contains(time) || equation.right.contains(time);
+        let names = &Names::beside(own.chain([equation.coordinate]), driven);
         let definition = |(name, meaning): (&String, &String)| {
             Ok(Definition {
-                symbol: Symbol::new(name),
-                meaning: expression(meaning, name)?,
+                symbol: names.symbol(name),
+                meaning: names.expression(meaning, name)?,
             })
         };
         Ok(Solution {
-            equation: parse_equation(&self.equation).or_else(|_| unexpected("equation", "an equation of motion"))?,
+            equation: Equation {
+                left: names.in_expression(equation.left, "equation")?,
+                right: names.in_expression(equation.right, "equation")?,
+                coordinate: names.symbol(equation.coordinate.name()),
+                typed: equation.typed,
+            },
             method,
             order: self.order,
             degrees: match self.degrees.as_deref().map(Degrees::of) {
                 Some(None) => return unexpected("degrees", "those of an approximant"),
                 degrees => degrees.flatten(),
             },
-            small_parameter: Symbol::new(&self.small_parameter),
+            small_parameter: names.symbol(&self.small_parameter),
             amplitude,
-            parameters: symbols(&self.parameters),
+            parameters: symbols(&self.parameters, names),
             definitions: self
                 .definitions
                 .iter()
                 .map(definition)
                 .collect::<Result<_, JsonError>>()?,
-            equilibrium: self.equilibrium.expression("equilibrium")?,
-            law: self.law()?,
-            displacement: self.displacement.read()?,
+            equilibrium: names.expression(&self.equilibrium.exact, "equilibrium")?,
+            law: self.law(names)?,
+            displacement: self.displacement.read(names)?,
             closed_motion: match &self.closed_motion {
-                Some(text) => Some(expression(text, "closed_motion")?),
+                Some(text) => Some(names.expression(text, "closed_motion")?),
                 None => None,
             },
-            limit_cycle: self.limit_cycle.as_ref().map(LimitCycle::read).transpose()?,
-            modulation: self.modulation.as_ref().map(Modulation::read).transpose()?,
-            response: self.response.as_ref().map(Response::read).transpose()?,
+            limit_cycle: self.limit_cycle.as_ref().map(|own| own.read(names)).transpose()?,
+            modulation: self.modulation.as_ref().map(|own| own.read(names)).transpose()?,
+            response: self.response.as_ref().map(|own| own.read(names)).transpose()?,
             numerical: self.numerical,
             validity: self.validity.iter().cloned().map(Note::Stated).collect(),
-            convergence: self.convergence.as_ref().map(Convergence::read).transpose()?,
+            convergence: self.convergence.as_ref().map(|own| own.read(names)).transpose()?,
             steps: vec![],
             derivation: vec![],
         })
     }
 
     /// The law, of whose kinds a document holds one.
-    fn law(&self) -> Result<Law, JsonError> {
-        let optional = |law: &Option<Polynomial>, key| law.as_ref().map(|law| law.exact(key)).transpose();
+    fn law(&self, names: &Names) -> Result<Law, JsonError> {
+        let optional = |law: &Option<Polynomial>, key| law.as_ref().map(|law| names.polynomial(law, key)).transpose();
         let frequency = optional(&self.frequency, "frequency")?;
         let squared = optional(&self.frequency_squared, "frequency_squared")?;
-        let form = self.closed_form.as_deref().map(closed_form).transpose()?;
-        let system = self.system.as_ref().map(System::read).transpose()?;
+        let form = self
+            .closed_form
+            .as_deref()
+            .map(|text| closed_form(text, names))
+            .transpose()?;
+        let system = self.system.as_ref().map(|own| own.read(names)).transpose()?;
         Ok(
             match (optional(&self.relation, "relation")?, squared, frequency, form, system) {
                 (Some(relation), squared, _, form, _) => Law::Relation {
@@ -614,85 +629,94 @@ impl SolutionDocument {
 }
 
 /// `omega = ...` or `omega^2 = ...`.
-fn closed_form(text: &str) -> Result<ClosedForm, JsonError> {
+fn closed_form(text: &str, names: &Names) -> Result<ClosedForm, JsonError> {
     let (squared, value) = match text.split_once(" = ") {
-        Some(("omega^2", value)) => (true, value),
-        Some(("omega", value)) => (false, value),
+        Some((name, value)) if name == names.frequency() => (false, value),
+        Some((name, value)) if name.strip_suffix("^2") == Some(names.frequency()) => (true, value),
         _ => return unexpected("closed_form", "`omega = ...` or `omega^2 = ...`"),
     };
-    let value = expression(value, "closed_form")?;
+    let value = names.expression(value, "closed_form")?;
     Ok(ClosedForm { squared, value })
 }
 
 impl System {
-    fn read(&self) -> Result<solution::System, JsonError> {
-        let equations = self.equations.iter().map(|text| expression(text, "equations"));
+    fn read(&self, names: &Names) -> Result<solution::System, JsonError> {
+        let equations = self.equations.iter().map(|text| names.expression(text, "equations"));
         Ok(solution::System {
-            unknowns: symbols(&self.unknowns),
+            unknowns: symbols(&self.unknowns, names),
             equations: equations.collect::<Result<_, _>>()?,
         })
     }
 }
 
 impl LimitCycle {
-    fn read(&self) -> Result<solution::LimitCycle, JsonError> {
+    fn read(&self, names: &Names) -> Result<solution::LimitCycle, JsonError> {
         Ok(solution::LimitCycle {
-            amplitude: self.amplitude.exact("limit_cycle")?,
+            amplitude: names.polynomial(&self.amplitude, "limit_cycle")?,
             number: self.number,
-            cycles: self.cycles.iter().map(Cycle::read).collect::<Result<_, JsonError>>()?,
-            small_with: symbols(&self.small_with),
+            cycles: self
+                .cycles
+                .iter()
+                .map(|own| own.read(names))
+                .collect::<Result<_, JsonError>>()?,
+            small_with: symbols(&self.small_with, names),
         })
     }
 }
 
 impl Cycle {
-    fn read(&self) -> Result<LeadingCycle, JsonError> {
+    fn read(&self, names: &Names) -> Result<LeadingCycle, JsonError> {
         let attracts_where = self.attracts_where_positive.as_deref();
         Ok(LeadingCycle {
-            amplitude: self.amplitude.expression("amplitude")?,
+            amplitude: names.expression(&self.amplitude.exact, "amplitude")?,
             attracts_where: attracts_where
-                .map(|text| expression(text, "attracts_where_positive"))
+                .map(|text| names.expression(text, "attracts_where_positive"))
                 .transpose()?,
         })
     }
 }
 
 impl Response {
-    fn read(&self) -> Result<solution::Response, JsonError> {
-        let polynomial = |value: &Option<Polynomial>, key| value.as_ref().map(|value| value.exact(key)).transpose();
+    fn read(&self, names: &Names) -> Result<solution::Response, JsonError> {
+        let polynomial =
+            |value: &Option<Polynomial>, key| value.as_ref().map(|value| names.polynomial(value, key)).transpose();
         let branches = |branches: &Branches| -> Result<_, JsonError> {
             Ok(solution::response::Branches {
-                centre: branches.centre.exact("centre")?,
-                width_squared: branches.width_squared.exact("width_squared")?,
+                centre: names.polynomial(&branches.centre, "centre")?,
+                width_squared: names.polynomial(&branches.width_squared, "width_squared")?,
             })
         };
         let closed = |closed: &ClosedRelation| -> Result<_, JsonError> {
             Ok(solution::response::ClosedRelation {
-                relation: expression(&closed.relation, "relation")?,
-                centre: expression(&closed.centre, "centre")?,
-                width_squared: expression(&closed.width_squared, "width_squared")?,
+                relation: names.expression(&closed.relation, "relation")?,
+                centre: names.expression(&closed.centre, "centre")?,
+                width_squared: names.expression(&closed.width_squared, "width_squared")?,
             })
         };
         let orders = |part: &[[Polynomial; 2]]| -> Result<Vec<_>, JsonError> {
-            let both = |[u, v]: &[Polynomial; 2]| Ok([u.exact("parts")?, v.exact("parts")?]);
+            let both = |[u, v]: &[Polynomial; 2]| Ok([names.polynomial(u, "parts")?, names.polynomial(v, "parts")?]);
             part.iter().map(both).collect()
         };
         let plane = |(coordinates, [u, v]): (&[String; 2], &[Polynomial; 2])| -> Result<_, JsonError> {
             Ok(solution::response::Plane {
-                coordinates: coordinates.each_ref().map(|name| Symbol::new(name)),
-                rates: [u.exact("rates")?, v.exact("rates")?],
+                coordinates: coordinates.each_ref().map(|name| names.symbol(name)),
+                rates: [names.polynomial(u, "rates")?, names.polynomial(v, "rates")?],
                 parts: self.parts.iter().map(|part| orders(part)).collect::<Result<_, _>>()?,
             })
         };
         Ok(solution::Response {
-            motion: expression(&self.motion, "motion")?,
+            motion: names.expression(&self.motion, "motion")?,
             relation: polynomial(&self.relation, "relation")?,
             branches: self.branches.as_ref().map(branches).transpose()?,
-            peak: self.peak.as_deref().map(|peak| expression(peak, "peak")).transpose()?,
+            peak: self
+                .peak
+                .as_deref()
+                .map(|peak| names.expression(peak, "peak"))
+                .transpose()?,
             folds: self
                 .folds
                 .iter()
-                .map(|fold| expression(fold, "folds"))
+                .map(|fold| names.expression(fold, "folds"))
                 .collect::<Result<_, _>>()?,
             jumps: polynomial(&self.jumps, "jumps")?,
             closed: self.closed.as_ref().map(closed).transpose()?,
@@ -707,50 +731,54 @@ impl Response {
 }
 
 impl Modulation {
-    fn read(&self) -> Result<solution::Modulation, JsonError> {
-        let optional = |text: &Option<String>, key| text.as_deref().map(|text| expression(text, key)).transpose();
+    fn read(&self, names: &Names) -> Result<solution::Modulation, JsonError> {
+        let optional = |text: &Option<String>, key| text.as_deref().map(|text| names.expression(text, key)).transpose();
         let resonance = |resonance: &Resonance| -> Result<_, JsonError> {
             Ok(modulation::Resonance {
-                driving_frequency: expression(&resonance.driving_frequency, "driving_frequency")?,
+                driving_frequency: names.expression(&resonance.driving_frequency, "driving_frequency")?,
                 times_driving: resonance.times_driving,
                 times_linear: resonance.times_linear,
                 detuning: Definition {
-                    symbol: Symbol::new(&resonance.detuning),
-                    meaning: expression(&resonance.detuning_means, "detuning_means")?,
+                    symbol: names.symbol(&resonance.detuning),
+                    meaning: names.expression(&resonance.detuning_means, "detuning_means")?,
                 },
             })
         };
         let release = |release: &Release| -> Result<_, JsonError> {
             Ok(modulation::Release {
-                amplitude: expression(&release.amplitude, "amplitude")?,
-                phase: expression(&release.phase, "phase")?,
+                amplitude: names.expression(&release.amplitude, "amplitude")?,
+                phase: names.expression(&release.phase, "phase")?,
             })
         };
         let transient = |transient: &Transient| -> Result<_, JsonError> {
             Ok(modulation::Transient {
-                start: Symbol::new(&transient.start),
-                amplitude: expression(&transient.amplitude, "amplitude")?,
+                start: names.symbol(&transient.start),
+                amplitude: names.expression(&transient.amplitude, "amplitude")?,
                 phase: optional(&transient.phase, "phase")?,
                 ends: optional(&transient.ends, "ends")?,
             })
         };
         Ok(solution::Modulation {
-            amplitude: Symbol::new(&self.amplitude),
-            phase: Symbol::new(&self.phase),
-            amplitude_rate: expression(&self.amplitude_rate, "amplitude_rate")?,
-            phase_rate: expression(&self.phase_rate, "phase_rate")?,
-            small_with: symbols(&self.small_with),
+            amplitude: names.symbol(&self.amplitude),
+            phase: names.symbol(&self.phase),
+            amplitude_rate: names.expression(&self.amplitude_rate, "amplitude_rate")?,
+            phase_rate: names.expression(&self.phase_rate, "phase_rate")?,
+            small_with: symbols(&self.small_with, names),
             resonance: self.resonance.as_ref().map(resonance).transpose()?,
             release: self.release.as_ref().map(release).transpose()?,
             transient: self.transient.as_ref().map(transient).transpose()?,
-            steady: self.steady.iter().map(Cycle::read).collect::<Result<_, JsonError>>()?,
-            motion: self.motion.as_ref().map(Displacement::read).transpose()?,
+            steady: self
+                .steady
+                .iter()
+                .map(|own| own.read(names))
+                .collect::<Result<_, JsonError>>()?,
+            motion: self.motion.as_ref().map(|own| own.read(names)).transpose()?,
         })
     }
 }
 
 impl Displacement {
-    fn read(&self) -> Result<FourierSeries<Polynomials>, JsonError> {
+    fn read(&self, names: &Names) -> Result<FourierSeries<Polynomials>, JsonError> {
         /// No document of ours comes near it; a hostile one must not fill the memory.
         const HIGHEST_HARMONIC: usize = 100_000;
         let length = self
@@ -765,8 +793,8 @@ impl Displacement {
         let mut cosine = vec![exact::Polynomial::zero(); length];
         let mut sine = cosine.clone();
         for entry in &self.harmonics {
-            cosine[entry.harmonic] = entry.cos.exact("cos")?;
-            sine[entry.harmonic] = entry.sin.exact("sin")?;
+            cosine[entry.harmonic] = names.polynomial(&entry.cos, "cos")?;
+            sine[entry.harmonic] = names.polynomial(&entry.sin, "sin")?;
         }
         Ok(FourierSeries::from_parts(POLYNOMIALS, cosine, sine))
     }

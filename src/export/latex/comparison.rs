@@ -7,6 +7,7 @@ use crate::expr::{Equation, Expr};
 use crate::report::MethodRow;
 use crate::solution::law::Shown;
 use crate::symbol::Symbol;
+use crate::symbol::letters::FREQUENCY;
 use crate::values::Values;
 
 pub(super) fn truth(equation: &Equation, frequency: &Result<f64, String>) -> String {
@@ -14,7 +15,7 @@ pub(super) fn truth(equation: &Equation, frequency: &Result<f64, String>) -> Str
         Ok(frequency) => decimal(*frequency),
         Err(reason) => format!("not known: {reason}"),
     };
-    format!("{equation}; true omega = {truth}")
+    format!("{equation}; true {FREQUENCY} = {truth}")
 }
 
 /// The table, a formula at the end of each row.
@@ -27,7 +28,7 @@ pub(super) fn methods(rows: &[MethodRow], at: &Values) -> Table {
         true => String::new(),
         false => format!(" at ${}$", at.join(", ")),
     };
-    let omega = format!("$\\omega${place}");
+    let omega = format!("${}${place}", symbol(FREQUENCY));
     Table {
         places: "lrrrl".to_owned(),
         head: table::head(&["method", &omega, "error in \\%", "deviation in \\%", "formula"]),
@@ -86,13 +87,14 @@ fn formula(method: &MethodRow) -> Result<String, &'static str> {
             });
             rates.unwrap_or_default()
         }
-        Shown::Squared(squared) => format!("\\omega^{{2}} = {}", ordered(squared)),
+        Shown::Squared(squared) => format!("{}^{{2}} = {}", symbol(FREQUENCY), ordered(squared)),
         Shown::Closed(_) if method.row.solution.numerical => return Err("closed form, rounded coefficients"),
         Shown::Closed(form) => {
-            let name = if form.squared { "\\omega^{2}" } else { "\\omega" };
+            let omega = symbol(FREQUENCY);
+            let name = if form.squared { omega + "^{2}" } else { omega };
             format!("{name} = {}", expression(&form.value))
         }
-        Shown::Frequency(frequency) => format!("\\omega = {}", ordered(frequency)),
+        Shown::Frequency(frequency) => format!("{} = {}", symbol(FREQUENCY), ordered(frequency)),
         Shown::Relation(relation) => format!("0 = {}", ordered(relation)),
         Shown::Quadrature(_) | Shown::System(_) => return Err("by numbers"),
     };

@@ -240,7 +240,7 @@ fn call(function: Function, arguments: &[Expr]) -> Vec<Piece> {
 /// underscores at the end as tildes. No two names look alike: where two spellings would meet, the index of the one with an
 /// underscore takes another shape, `k1` being `k_{1}` and `k_1` being `k_{\mathit{1}}`.
 pub fn symbol(symbol: Symbol) -> String {
-    let bare = symbol.coordinate().name();
+    let bare = symbol.coordinate().written();
     let name = bare.trim_end_matches('_');
     let (stem, index) = match name.split_once('_') {
         Some((stem, index)) if index.bytes().all(|letter| letter.is_ascii_digit()) => {

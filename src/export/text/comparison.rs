@@ -7,6 +7,7 @@ use crate::decimal::{decimal, significant};
 use crate::expr::Equation;
 use crate::report::{Block, Document, MethodRow};
 use crate::symbol::Symbol;
+use crate::symbol::letters::FREQUENCY;
 use crate::values::Values;
 use crate::verify::Verdict;
 use crate::verify::comparison::{Refused, Row};
@@ -44,7 +45,7 @@ pub(in crate::export) fn true_frequency(at: &Values, frequency: &Result<f64, Str
         Ok(frequency) => decimal(*frequency),
         Err(reason) => format!("not known: {reason}"),
     };
-    format!("True omega{place}: {truth}")
+    format!("True {FREQUENCY}{place}: {truth}")
 }
 
 /// The table, and the formulas below it where it has no room for them.
@@ -117,7 +118,7 @@ pub(in crate::export) fn cells(rows: &[MethodRow], tolerance: f64) -> Vec<[Strin
         .any(|row| matches!(row.row.reach, Some(Reach::Between { .. })));
     let range = if over_several_wells { "for" } else { "up to" };
     let within = format!("{} % {range}", significant(100.0 * tolerance, 3));
-    let header = ["method", "omega", "error", "deviation", "verdict", &within].map(str::to_owned);
+    let header = ["method", FREQUENCY.written(), "error", "deviation", "verdict", &within].map(str::to_owned);
     // All rows start where the first one does, whatever their formulas measure.
     let amplitude = rows.first().map(|first| first.row.solution.amplitude.symbol());
     let cells = |MethodRow { row, title, .. }: &MethodRow| {

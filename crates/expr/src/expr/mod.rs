@@ -64,6 +64,7 @@ pub use print::Inside;
 pub use rounding::{LostDigits, Rounded};
 pub use typed::{Quotation, Typed};
 
+pub use crate::symbol::letters::{InForce, Letters};
 pub use crate::symbol::{fresh, fresh_stem, phase_beside};
 
 /// The largest numerator or denominator of an exponent that [`Expr::power`] accepts on anything but a number.

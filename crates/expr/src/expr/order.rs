@@ -54,7 +54,7 @@ enum Class {
 
 fn symbol_class(symbol: Symbol) -> Class {
     match symbol.name() {
-        "A" | "a" => Class::Amplitude,
+        "A" | "a" if !symbol.is_apart() => Class::Amplitude,
         "x" | "theta" => Class::Coordinate,
         "t" => Class::Time,
         _ if symbol.primes() > 0 => Class::Coordinate,

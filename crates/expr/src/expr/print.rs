@@ -188,7 +188,7 @@ fn write_node(expr: &Expr, place: Place, out: &mut fmt::Formatter<'_>, open: &mu
     }
     match expr.node() {
         Node::Pi => out.write_str("pi"),
-        Node::Symbol(symbol) => out.write_str(symbol.name()),
+        Node::Symbol(symbol) => out.write_str(symbol.written()),
         Node::Number(value) if place == Place::Unsigned => write_number(&value.abs(), out),
         Node::Number(value) => write_number(value, out),
         Node::Sum(terms) => {

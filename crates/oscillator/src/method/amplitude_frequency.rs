@@ -27,6 +27,7 @@ use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Note, Solution, note::Instant};
 use crate::symbol::fresh_stem;
+use crate::symbol::letters::{AMPLITUDE, FREQUENCY};
 
 /// The frequency from the residuals of two trial motions.
 ///
@@ -47,7 +48,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let law = positive_amplitude(&law).unwrap_or(law);
     let mut solution = unsolved(oscillator, options, METHOD, 1);
     set_law(&mut solution, &law)?;
-    let [letter, residual] = ["omega", "R"].map(|letter| fresh_stem(letter, &oscillator.names()));
+    let [letter, residual] = [FREQUENCY.written(), "R"].map(|letter| fresh_stem(letter, &oscillator.names()));
     let [first_name, second_name] = [1, 2].map(|number| format!("{letter}{number}"));
     let [omega, first_trial, second_trial] =
         ["omega", &first_name, &second_name].map(|name| Expr::symbol(name).integer_power(2));
@@ -56,8 +57,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let mixed = Expr::divide(&(&first_trial * &r2 - &second_trial * &r1), &(&r2 - &r1))?;
     let [one, two] = &trials;
     solution.derivation = vec![
-        Line::equation(first_trial, one).because(format!("first trial motion A*cos({first_name}*t)")),
-        Line::equation(second_trial, two).because(format!("second trial motion A*cos({second_name}*t)")),
+        Line::equation(first_trial, one).because(format!("first trial motion {AMPLITUDE}*cos({first_name}*t)")),
+        Line::equation(second_trial, two).because(format!("second trial motion {AMPLITUDE}*cos({second_name}*t)")),
         Line::equation(r1, first).because("residuals where the square of the cosine is 3/4"),
         Line::equation(r2, second),
         Line::equal([omega?.into(), mixed.into(), law.into()]).because("weighted by the residuals"),

@@ -32,6 +32,7 @@ use crate::exact::Doubles;
 use crate::numeric::ode::quadrature::nodes_and_weights;
 use crate::numeric::ode::root::find_root;
 use crate::series::FourierSeries;
+use crate::symbol::letters::AMPLITUDE;
 
 /// A balance solved by numbers.
 pub struct Balance {
@@ -50,7 +51,8 @@ pub struct Balance {
 pub enum Lost {
     /// The branch never reaches the amplitude.
     #[error(
-        "no balance: followed from rest, the motion of these harmonics ends at A = {}; another order may reach farther",
+        "no balance: followed from rest, the motion of these harmonics ends at {} = {}; another order may reach farther",
+        AMPLITUDE,
         significant(*amplitude, 6)
     )]
     Ends {
@@ -62,8 +64,10 @@ pub enum Lost {
     NoStart,
     /// The branch of motions through an unstable equilibrium never reaches the amplitude.
     #[error(
-        "no balance: followed from A = {}, the motion of these harmonics over both wells ends at A = {}; another order may reach farther",
+        "no balance: followed from {} = {}, the motion of these harmonics over both wells ends at {} = {}; another order may reach farther",
+        AMPLITUDE,
         significant(*from, 6),
+        AMPLITUDE,
         significant(*amplitude, 6)
     )]
     EndsOnTheWay {

@@ -30,6 +30,7 @@ use crate::expr::{Expr, ExprError, Function, Node};
 use crate::oscillator::Oscillator;
 use crate::solution::{Law, Method, Note, Solution, note::Instant};
 use crate::symbol::fresh;
+use crate::symbol::letters::AMPLITUDE;
 
 const METHOD: Method = Method::EnergyBalance;
 
@@ -75,8 +76,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             let quarter = Expr::divide(&amplitude.integer_power(2)?, &Expr::from(4))?;
             let integral = work(Expr::divide(&Expr::one(), &quarter)?);
             solution.derivation = vec![
-                Line::equation(&squared * &quarter, work(Expr::one()))
-                    .because("kinetic energy of A*cos(θ) at θ = pi/4, from the work of the force"),
+                Line::equation(&squared * &quarter, work(Expr::one())).because(format!(
+                    "kinetic energy of {AMPLITUDE}*cos(θ) at θ = pi/4, from the work of the force"
+                )),
                 Line::equation(squared.clone(), integral.clone()),
             ];
             solution.law = Law::Quadrature(vec![Line::equation(squared, integral)]);
@@ -97,8 +99,9 @@ fn derivation(oscillator: &Oscillator, potential: &Expr) -> Result<Vec<Line>, Re
     let kinetic = Expr::divide(&(&omega * &amplitude).integer_power(2)?, &Expr::from(4))?;
     Ok(vec![
         Line::equation(fresh("V", &oscillator.names()), potential).because("potential energy"),
-        Line::equation(kinetic + at(&eighth)?, at(&amplitude)?)
-            .because("kinetic and potential energy of A*cos(θ) at θ = pi/4, and at θ = 0"),
+        Line::equation(kinetic + at(&eighth)?, at(&amplitude)?).because(format!(
+            "kinetic and potential energy of {AMPLITUDE}*cos(θ) at θ = pi/4, and at θ = 0"
+        )),
     ])
 }
 

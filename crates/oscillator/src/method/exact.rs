@@ -54,6 +54,7 @@ use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
 use crate::solution::{ClosedForm, Law, Method, Note, Solution, note::ExactBy};
 use crate::symbol::fresh;
+use crate::symbol::letters::AMPLITUDE;
 
 /// The exact law of a conservative oscillator, whose motion is known by numbers; the exact motion of a linear one that something damps or
 /// drives.
@@ -173,7 +174,7 @@ impl Energy<'_> {
                 }
             };
             lines.push(Line::equal(equal).because(format!(
-                "the other turning point {turning_back}, of the other sign than A"
+                "the other turning point {turning_back}, of the other sign than {AMPLITUDE}"
             )));
         }
         let period = Formula::Integral {
@@ -185,7 +186,7 @@ impl Energy<'_> {
         };
         let words = match self.is_odd {
             true => "the period, from the energy".to_owned(),
-            false => format!("the period, from the energy; for A < 0 from A to {turning_back}"),
+            false => format!("the period, from the energy; for {AMPLITUDE} < 0 from {AMPLITUDE} to {turning_back}"),
         };
         lines.push(Line::equation(total, period).because(words));
         let frequency = Expr::divide(&(Expr::from(2) * Expr::pi()), &Expr::from(total))?;

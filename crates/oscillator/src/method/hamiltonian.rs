@@ -29,6 +29,7 @@ use crate::expr::{Expr, Function};
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Note, Solution, note::FirstStep};
 use crate::symbol::fresh;
+use crate::symbol::letters::AMPLITUDE;
 
 /// The frequency by the mean Hamiltonian.
 ///
@@ -79,7 +80,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     };
     solution.derivation = vec![
         Line::equation(fresh("V", &names), potential).because("potential energy"),
-        Line::equal([mean_name.into(), integral, mean.into()]).because("its mean over A*cos(θ)"),
+        Line::equal([mean_name.into(), integral, mean.into()]).because(format!("its mean over {AMPLITUDE}*cos(θ)")),
         Line::equal([Expr::symbol("omega").integer_power(2)?.into(), slope, law.into()])
             .because("the mean Hamiltonian is stationary"),
     ];

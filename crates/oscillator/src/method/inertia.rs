@@ -50,6 +50,7 @@ use crate::solution::{
     AmplitudeConvention, Law, Method, Note, Solution, System,
     note::{ExactBy, FirstStep, Instant},
 };
+use crate::symbol::letters::{AMPLITUDE, FREQUENCY};
 use crate::symbol::{Symbol, fresh};
 
 /// The two functions of `x'' + g x'^2 + h = 0`, and what the energy is made of.
@@ -352,7 +353,7 @@ fn energy_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Opti
             let kinetic = &quarter * &squared * &inertia;
             solution
                 .derivation
-                .push(Line::equation(kinetic, rise).because("the energy of A*cos(θ) at θ = pi/4"));
+                .push(Line::equation(kinetic, rise).because(format!("the energy of {AMPLITUDE}*cos(θ) at θ = pi/4")));
             solution.derivation.push(Line::equation(squared, &law));
             set_law(&mut solution, &law)?;
         }
@@ -365,8 +366,8 @@ fn energy_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Opti
                 None => there.into(),
             };
             let words = match &moving.mass {
-                Some(_) => "the energy of A*cos(θ) at θ = pi/4".to_owned(),
-                None => format!("the energy of A*cos(θ) at θ = pi/4, {there} the value of {name} there"),
+                Some(_) => format!("the energy of {AMPLITUDE}*cos(θ) at θ = pi/4"),
+                None => format!("the energy of {AMPLITUDE}*cos(θ) at θ = pi/4, {there} the value of {name} there"),
             };
             let work = Formula::Integral {
                 factor: Expr::one(),
@@ -421,9 +422,11 @@ fn hamiltonian(moving: &VariableMass, oscillator: &Oscillator, options: &Options
                 by: "A".into(),
             };
             solution.derivation.extend([
-                Line::equation(k, kinetic).because("mean kinetic energy of A*cos(θ) over omega^2"),
+                Line::equation(k, kinetic)
+                    .because(format!("mean kinetic energy of {AMPLITUDE}*cos(θ) over {FREQUENCY}^2")),
                 Line::equation(p, potential).because("mean potential energy"),
-                Line::equal([slope(k, squared.clone()), slope(p, Expr::one())]).because("stationary in A"),
+                Line::equal([slope(k, squared.clone()), slope(p, Expr::one())])
+                    .because(format!("stationary in {AMPLITUDE}")),
                 Line::equation(squared, &law),
             ]);
             set_law(&mut solution, &law)?;
@@ -456,7 +459,7 @@ fn hamiltonian(moving: &VariableMass, oscillator: &Oscillator, options: &Options
                 over_half(Expr::one(), mass * force * cosine),
             ]);
             solution.derivation.push(line.because(format!(
-                "{} times the equation has no cos(θ) along A*cos(θ)",
+                "{} times the equation has no cos(θ) along {AMPLITUDE}*cos(θ)",
                 mass_name(oscillator)
             )));
             solution.law = Law::Quadrature(solution.derivation.clone());

@@ -36,6 +36,7 @@ use crate::series::FourierSeries;
 use crate::series::fourier::linear_combination;
 use crate::solution::note::Cut;
 use crate::solution::{Definition, Law, Method, Note, Solution};
+use crate::symbol::letters::FREQUENCY;
 use crate::symbol::{Symbol, fresh_stem};
 
 const METHOD: Method = Method::IterationPerturbation;
@@ -212,16 +213,16 @@ impl Pass {
         let mut lines = vec![
             Line::equation(factor, self.factor.clone())
                 .because(format!("pass {number}, the factor frozen at {before}")),
-            Line::equal([left, self.right_side.clone().into()])
-                .because(format!("{after}'' + omega^2*{after} = (omega^2 - factor)*{before}")),
+            Line::equal([left, self.right_side.clone().into()]).because(format!(
+                "{after}'' + {FREQUENCY}^2*{after} = ({FREQUENCY}^2 - factor)*{before}"
+            )),
         ];
         let zero = Expr::zero();
         match next {
             Some(motion) => {
-                lines.push(
-                    Line::equation(after, motion.clone())
-                        .because("the secular term left out: omega follows from the last pass"),
-                );
+                lines.push(Line::equation(after, motion.clone()).because(format!(
+                    "the secular term left out: {FREQUENCY} follows from the last pass"
+                )));
             }
             None => lines.push(Line::equation(&secular, zero).because("no cos(θ) on the right")),
         }

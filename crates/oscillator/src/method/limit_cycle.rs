@@ -31,6 +31,7 @@ use crate::expr::Expr;
 use crate::oscillator::PerturbedForce;
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Definition, LeadingCycle, Note};
+use crate::symbol::letters::FIRST_HARMONIC;
 use crate::symbol::{Symbol, fresh};
 
 /// The equation `g(z) = 0` for the square of the amplitude.
@@ -123,7 +124,7 @@ impl AmplitudeEquation {
         linear_frequency: &Polynomial,
         taken: &[Symbol],
     ) -> Result<Vec<Cycle>, &'static str> {
-        let name = fresh("a0", taken);
+        let name = fresh(&format!("{FIRST_HARMONIC}0"), taken);
         let signs = self.factor.product(&Monomial::power_of(delta, 1));
         let signs = sign_of(&signs, linear_frequency);
         let numbers: Option<Vec<Rational>> = self.rest.iter().map(Polynomial::as_number).collect();

@@ -45,6 +45,7 @@ use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, Smal
 use crate::series::taylor::TaylorError;
 use crate::solution::note::{Cut, ExactBy};
 use crate::solution::{AmplitudeConvention, Definition, Law, LimitCycle, Method, Note, Solution};
+use crate::symbol::letters::FIRST_HARMONIC;
 use crate::symbol::{Symbol, fresh};
 
 /// Derives frequency and motion as power series in the small parameter.
@@ -336,9 +337,10 @@ fn expanded(
         series.change_coefficients(&unmarked);
         if let Some(start) = series.steps.first_mut() {
             let marked = is_parameter.then_some(delta);
-            let condition = excited
-                .equation
-                .condition(excited.cycle(), fresh("a0", names.0), marked);
+            let condition =
+                excited
+                    .equation
+                    .condition(excited.cycle(), fresh(&format!("{FIRST_HARMONIC}0"), names.0), marked);
             start.amplitude = Some(condition);
         }
     }

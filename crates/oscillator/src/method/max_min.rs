@@ -42,6 +42,7 @@ use crate::numeric::ode::root::find_root;
 use crate::oscillator::Oscillator;
 use crate::series::taylor::taylor;
 use crate::solution::{Method, Note, Solution, note::BoundsHold};
+use crate::symbol::letters::AMPLITUDE;
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
 /// The frequency between the bounds of `f(x)/x`.
@@ -64,13 +65,13 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let mut solution = solve_by_integral(oscillator, options, METHOD)?;
     let squared: Formula = Expr::symbol("omega").integer_power(2)?.into();
     let names = oscillator.names();
-    let [q, rest, end, turn] = ["q", "q_rest", "q_A", "q_s"].map(|name| fresh(name, &names));
+    let [q, rest, end, turn] = ["q", "q_rest", &format!("q_{AMPLITUDE}"), "q_s"].map(|name| fresh(name, &names));
     let [lo, hi, share] = ["lo", "hi", "k"].map(|name| Expr::from(fresh(name, &names)));
     let [rest, end] = [rest, end].map(Expr::from);
     let mut lines = vec![
         Line::equation(q, &quotient).because(format!("{coordinate}'' + {q}*{coordinate} = 0 with the factor")),
         Line::equation(rest.clone(), &at_rest).because("at rest"),
-        Line::equation(end.clone(), &at_turning).because(format!("at {coordinate} = A")),
+        Line::equation(end.clone(), &at_turning).because(format!("at {coordinate} = {AMPLITUDE}")),
     ];
     lines.extend(integral_law(oscillator, &force, &solution)?);
     let law = law_of(&solution);
@@ -81,9 +82,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
                 between([&rest, &end]).because(format!("while {q} runs from one to the other without turning back")),
             );
             if let Some((place, value)) = stationary_point(&quotient, coordinate)? {
-                lines.push(
-                    Line::equal(place).because("it turns back where the right side is positive and A lies beyond"),
-                );
+                lines.push(Line::equal(place).because(format!(
+                    "it turns back where the right side is positive and {AMPLITUDE} lies beyond"
+                )));
                 lines.push(Line::equation(turn, value).because("the bound there"));
             }
             let slope = quotient.differentiate(coordinate)?.expand()?;
@@ -101,9 +102,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         }
         Some(places) => {
             let first = decimal(places[0].0);
-            lines.push(between([&rest, &end]).because(format!("for A up to {first}")));
+            lines.push(between([&rest, &end]).because(format!("for {AMPLITUDE} up to {first}")));
             lines.extend(pieces(&places, &at_rest, oscillator, [&end, &lo, &hi])?);
-            lines.push(between([&lo, &hi]).because(format!("for A beyond {first}")));
+            lines.push(between([&lo, &hi]).because(format!("for {AMPLITUDE} beyond {first}")));
             BoundsHold::UpTo(places[0].0)
         }
     };
@@ -235,8 +236,8 @@ fn pieces(
             x = oscillator.coordinate
         )));
         let range = match places.get(index + 1) {
-            Some((next, _)) => format!("for A from {} to {}", decimal(place), decimal(*next)),
-            None => format!("for A beyond {}", decimal(place)),
+            Some((next, _)) => format!("for {AMPLITUDE} from {} to {}", decimal(place), decimal(*next)),
+            None => format!("for {AMPLITUDE} beyond {}", decimal(place)),
         };
         let minimum = Expr::function(Function::Minimum, vec![least_name.into(), end.clone()])?;
         let maximum = Expr::function(Function::Maximum, vec![largest_name.into(), end.clone()])?;

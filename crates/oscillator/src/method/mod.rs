@@ -73,6 +73,7 @@ use crate::series::taylor::TaylorError;
 use crate::solution::{
     Advice, AmplitudeConvention, Degrees, Method, Note, Setting, Solution, constant_in_words, note::Position,
 };
+use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY};
 use crate::symbol::{Symbol, fresh};
 
 /// The highest order any method accepts.
@@ -140,7 +141,7 @@ pub enum Refusal {
     #[error(transparent)]
     Oscillator(#[from] OscillatorError),
     /// A parameter with the name of something in the answer.
-    #[error("the parameter `{0}` has the name of the amplitude or the frequency in the answer")]
+    #[error("`{0}` in the equation has the name of the amplitude or the frequency in the answer")]
     NameOfAnswer(Symbol),
     /// The method is not for this equation, or not for what was asked of it.
     #[error("{refuser} {reason}")]
@@ -188,7 +189,10 @@ pub enum Refusal {
         quotient: String,
     },
     /// A force that is flat at half the amplitude.
-    #[error("the slope of `{force}` at x = A/2 is zero, so the formula gives no frequency")]
+    #[error(
+        "the slope of `{force}` at x = {}/2 is zero, so the formula gives no frequency",
+        AMPLITUDE
+    )]
     NoSlope {
         /// The force.
         force: String,
@@ -247,7 +251,7 @@ pub enum Unsuited {
         term: Quotation,
     },
     /// A method that measures the amplitude in one way only.
-    #[error("measures the amplitude as A = x(0)")]
+    #[error("measures the amplitude as {} = x(0)", AMPLITUDE)]
     Convention,
     /// A term that depends on time, but is no single wave.
     #[error("takes drives such as F*cos(Omega*t) and h*x*cos(Omega*t), but `{term}` is no such wave, periodic in time")]
@@ -342,7 +346,10 @@ pub enum Unsuited {
         term: Quotation,
     },
     /// A series in several combinations of letters, in a method for one variable.
-    #[error("needs a series in one variable, but the symbols of omega^2 enter in several combinations")]
+    #[error(
+        "needs a series in one variable, but the symbols of {}^2 enter in several combinations",
+        FREQUENCY
+    )]
     SeveralVariables,
     /// An order beyond what a method has.
     #[error("has no order above {highest}")]
@@ -371,7 +378,11 @@ pub enum Unsuited {
         lowest: u32,
     },
     /// A motion whose amplitude changes, measured at its start alone.
-    #[error("measures an amplitude that changes by the first harmonic: a, which begins at A")]
+    #[error(
+        "measures an amplitude that changes by the first harmonic: {}, which begins at {}",
+        FIRST_HARMONIC,
+        AMPLITUDE
+    )]
     SlowAmplitude,
     /// Slow equations among answers for periodic motions.
     #[error("gives an amplitude that changes, and no closed form of one that stays")]
@@ -639,10 +650,12 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     if let Some(name) = oscillator
         .parameters
         .iter()
-        .find(|name| NAMES_OF_ANSWERS.contains(&name.name()))
+        .chain([&oscillator.coordinate])
+        .find(|name| NAMES_OF_ANSWERS.contains(&name.name()) && !name.is_apart())
     {
-        return Err(Refusal::NameOfAnswer(*name));
+        return Err(Refusal::NameOfAnswer(name.apart()));
     }
+    let _letters = oscillator.letters().in_force();
     let solution =
         solve_as_asked(oscillator, options).map_err(|refusal| without_linear_force(refusal, oscillator, options))?;
     let phase = oscillator.phase();
@@ -827,7 +840,7 @@ fn about_a_load(centred: &Centred, options: &Options) -> Options {
     let amplitude = options.small.is_none() && matches!(small, Ok(SmallParameter::Parameter(name)) if moves(name));
     Options {
         small: if amplitude {
-            Some("A".to_owned())
+            Some(AMPLITUDE.to_string())
         } else {
             options.small.clone()
         },

@@ -22,6 +22,7 @@ use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Branch, Counts, Method, Solution};
 use crate::symbol::Symbol;
+use crate::symbol::letters::{AMPLITUDE, FREQUENCY, of_frequency};
 
 /// The relative rounding error above which a closed form is set aside for the integral it stands for.
 const LOST_DIGITS: f64 = 1e-13;
@@ -80,7 +81,7 @@ impl Known {
 #[non_exhaustive]
 pub enum NoNumbers {
     /// The branch of an implicit relation turns back or reaches zero before the amplitude asked for.
-    #[error("not real: the root that continues the linear frequency ends at A = {}", significant(*amplitude, 6))]
+    #[error("not real: the root that continues the linear frequency ends at {} = {}", AMPLITUDE, significant(*amplitude, 6))]
     BranchEnds {
         /// Where.
         amplitude: f64,
@@ -89,13 +90,13 @@ pub enum NoNumbers {
     #[error("not real: no root continues the frequency of order 1 at this amplitude")]
     NoneOfFirstOrder,
     /// omega^2 is not positive.
-    #[error("not real: omega^2 <= 0")]
+    #[error("not real: {}^2 <= 0", FREQUENCY)]
     NotReal,
     /// omega itself is not positive, of a law for omega.
-    #[error("not positive: omega <= 0")]
+    #[error("not positive: {} <= 0", FREQUENCY)]
     NotPositive,
     /// The law is larger than any number.
-    #[error("{law} is beyond the range of double precision, 1.8e308")]
+    #[error("{} is beyond the range of double precision, 1.8e308", of_frequency(law))]
     LawBeyond {
         /// `omega^2` or `omega`.
         law: &'static str,
@@ -128,7 +129,8 @@ pub enum NoNumbers {
     Balance(#[from] balance::Lost),
     /// The terms of the formula cancel.
     #[error(
-        "no digits: the terms of the formula cancel at this amplitude, and rounding moves omega^2 by {} of itself",
+        "no digits: the terms of the formula cancel at this amplitude, and rounding moves {}^2 by {} of itself",
+        FREQUENCY,
         significant(*rounding, 2)
     )]
     Cancels {
@@ -137,7 +139,8 @@ pub enum NoNumbers {
     },
     /// The integral that defines the law goes up and down too often.
     #[error(
-        "no digits: the integral that defines omega^2 is known at this amplitude to {} of itself only",
+        "no digits: the integral that defines {}^2 is known at this amplitude to {} of itself only",
+        FREQUENCY,
         significant(*error, 2)
     )]
     Integral {
@@ -419,8 +422,8 @@ pub fn law_name(solution: &Solution) -> &'static str {
         _ if solution.law.frequency_squared().is_some() || solution.law.relation().is_some() || by_integral => {
             "omega^2"
         }
-        Some(form) => form.name(),
-        None => "omega",
+        Some(form) if form.squared => "omega^2",
+        _ => "omega",
     }
 }
 
@@ -822,9 +825,9 @@ fn solve(
         let remark = found.rest_ends_at.map(|end| {
             let end = significant(end, 6);
             match found.over_several_wells {
-                true => format!("a balance about several wells: the one that continues from rest ends at A = {end}"),
+                true => format!("a balance about several wells: the one that continues from rest ends at {AMPLITUDE} = {end}"),
                 false => format!(
-                    "a balance followed down from large amplitudes: the one that continues from rest ends at A = {end}"
+                    "a balance followed down from large amplitudes: the one that continues from rest ends at {AMPLITUDE} = {end}"
                 ),
             }
         });

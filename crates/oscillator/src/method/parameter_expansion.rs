@@ -29,6 +29,7 @@ use crate::derivation::{Formula, Line};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
+use crate::symbol::letters::FREQUENCY;
 use crate::symbol::{fresh, fresh_stem};
 
 /// The frequency, and the motion, to an order in the bookkeeping parameter; order 2 unless the force is no polynomial.
@@ -57,7 +58,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         solution.derivation = vec![
             Line::equation(start, along).because(format!("at {p}^0")),
             Line::equation(left, driven).because(format!(
-                "at {p}^1, {omega0}^2 - omega^2 = {p}*{w}1 and the nonlinear terms together"
+                "at {p}^1, {omega0}^2 - {FREQUENCY}^2 = {p}*{w}1 and the nonlinear terms together"
             )),
         ];
         let law = integral_law(oscillator, &oscillator.force, &solution)?;

@@ -22,6 +22,7 @@ use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
 use crate::numeric::ode::root::find_root;
 use crate::solution::modulation::{Release, Transient};
 use crate::solution::{Definition, LeadingCycle};
+use crate::symbol::letters::FIRST_HARMONIC;
 use crate::symbol::{Symbol, fresh};
 
 /// The motion of slow equations from where it is released, with names for what is more than a symbol there: `a0` and `psi0`, beside
@@ -42,7 +43,7 @@ pub(crate) fn from_release(
         definitions.push(Definition { symbol, meaning });
         Expr::from(symbol)
     };
-    let start = named("a0", &mut release.amplitude);
+    let start = named(&format!("{FIRST_HARMONIC}0"), &mut release.amplitude);
     let phase = named("psi0", &mut release.phase);
     let found = closed(a, rate, phase_rate, [&start, &phase]);
     (definitions, found)

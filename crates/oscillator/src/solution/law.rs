@@ -7,6 +7,7 @@ use crate::derivation::Line;
 use crate::exact::{Polynomial, Rational};
 use crate::expr::Expr;
 use crate::symbol::Symbol;
+use crate::symbol::letters::FREQUENCY;
 
 /// What ties the frequency to the amplitude. Polynomials and expressions are in the parameters of the equation, the amplitude
 /// symbol and the symbols of the definitions of the solution.
@@ -276,8 +277,11 @@ impl Shown<'_> {
 
 impl ClosedForm {
     /// The left side: `omega^2` or `omega`.
-    pub fn name(&self) -> &'static str {
-        if self.squared { "omega^2" } else { "omega" }
+    pub fn name(&self) -> String {
+        match self.squared {
+            true => format!("{FREQUENCY}^2"),
+            false => FREQUENCY.to_string(),
+        }
     }
 }
 

@@ -16,6 +16,7 @@ use super::{AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, Limi
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::Expr;
 use crate::series::FourierSeries;
+use crate::symbol::letters::FIRST_HARMONIC;
 use crate::symbol::{Symbol, fresh};
 
 /// The equations of amplitude and phase, and what is known of their solutions.
@@ -144,7 +145,7 @@ impl Solution {
         let unit = match amplitude.to_polynomial(&mut |_| None).ok()? {
             Some(unit) => unit,
             None => {
-                let symbol = fresh("a0", &self.names());
+                let symbol = fresh(&format!("{FIRST_HARMONIC}0"), &self.names());
                 periodic.definitions.push(Definition {
                     symbol,
                     meaning: amplitude,

@@ -10,6 +10,7 @@ use crate::decimal::decimal;
 use crate::exact::{Monomial, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::symbol::Symbol;
+use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY};
 
 /// One statement about an answer; printed, it is a sentence.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +26,15 @@ pub enum Note {
         typed: Symbol,
         /// The name in the answer.
         written: Symbol,
+    },
+    /// A letter that the answer writes otherwise than usual, since the equation has the usual one for something of its own.
+    OtherLetter {
+        /// The usual letter: `A`, `a` or `omega`.
+        usual: Symbol,
+        /// The letter in this answer.
+        written: Symbol,
+        /// Whether the coordinate of the equation has the usual letter; otherwise a parameter has it.
+        is_coordinate: bool,
     },
     /// A parameter whose name looks like something else.
     Misleading {
@@ -424,13 +434,19 @@ impl fmt::Display for CrossWell {
             self.coordinate, self.equilibrium
         )?;
         match (&self.from, &self.to) {
-            (Some(from), CrossWellEnd::At(to)) => write!(formatter, "{from} < |A| < {to}")?,
-            (Some(from), CrossWellEnd::Never) => write!(formatter, "|A| > {from}")?,
-            (Some(from), CrossWellEnd::Somewhere) => write!(formatter, "|A| > {from}, up to the next unstable one")?,
-            (None, CrossWellEnd::Somewhere) => formatter.write_str(
-                "where the potential energy at A is above that of the equilibrium, up to the next unstable one",
+            (Some(from), CrossWellEnd::At(to)) => write!(formatter, "{from} < |{AMPLITUDE}| < {to}")?,
+            (Some(from), CrossWellEnd::Never) => write!(formatter, "|{AMPLITUDE}| > {from}")?,
+            (Some(from), CrossWellEnd::Somewhere) => {
+                write!(formatter, "|{AMPLITUDE}| > {from}, up to the next unstable one")?
+            }
+            (None, CrossWellEnd::Somewhere) => write!(
+                formatter,
+                "where the potential energy at {AMPLITUDE} is above that of the equilibrium, up to the next unstable one"
             )?,
-            (None, _) => formatter.write_str("where the potential energy at A is above that of the equilibrium")?,
+            (None, _) => write!(
+                formatter,
+                "where the potential energy at {AMPLITUDE} is above that of the equilibrium"
+            )?,
         }
         if self.others {
             formatter.write_str(", and others farther out")?;
@@ -469,12 +485,30 @@ impl fmt::Display for Note {
                     "the parameter {typed} of the equation is written {written}: {typed} is the {meaning} in the answer"
                 )
             }
+            Self::OtherLetter {
+                usual,
+                written,
+                is_coordinate,
+            } => {
+                let of_answer = match *usual {
+                    FREQUENCY => "frequency",
+                    FIRST_HARMONIC => "amplitude of the first harmonic",
+                    _ => "amplitude",
+                };
+                let of_equation = if *is_coordinate { "the coordinate" } else { "a parameter" };
+                write!(
+                    formatter,
+                    "the {of_answer} of the answer is written {}, since {} is {of_equation} of the equation",
+                    written.name(),
+                    usual.name()
+                )
+            }
             Self::Misleading { name, instead } => write!(formatter, "{name} is read as a parameter; {instead}"),
             Self::EvenPartLeftOut(even) => even_part(formatter, even),
             Self::Cut(cut) => cut.fmt(formatter),
             Self::MotionAtLeadingOrder { small } => write!(
                 formatter,
-                "the motion is A times the cosine of its phase: its part of the size of {small}, drift and harmonics, is left out"
+                "the motion is {AMPLITUDE} times the cosine of its phase: its part of the size of {small}, drift and harmonics, is left out"
             ),
             Self::ConvergenceControl(hbar) => write!(
                 formatter,
@@ -501,7 +535,7 @@ impl fmt::Display for Note {
                 match last {
                     Some(last) => write!(
                         formatter,
-                        "the series converges everywhere: omega^2 ends with {}, none of the powers of {} up to {} stands behind it",
+                        "the series converges everywhere: {FREQUENCY}^2 ends with {}, none of the powers of {} up to {} stands behind it",
                         words(last),
                         words(variable),
                         words(&variable.power(i32::try_from(*highest).unwrap_or(i32::MAX)))
@@ -509,7 +543,7 @@ impl fmt::Display for Note {
                     None => write!(
                         formatter,
                         "the series converges everywhere: by {highest} coefficients, which fall faster than the powers of any number, \
-                         omega^2 has no singularity in {}",
+                         {FREQUENCY}^2 has no singularity in {}",
                         words(variable)
                     ),
                 }
@@ -592,7 +626,7 @@ impl fmt::Display for Note {
                 reason,
             } => write!(
                 formatter,
-                "the amplitudes that stay follow from {polynomial} = 0, {square} = a^2, {reason}"
+                "the amplitudes that stay follow from {polynomial} = 0, {square} = {FIRST_HARMONIC}^2, {reason}"
             ),
             Self::Positive(definition) => positive(formatter, definition),
             Self::Driven {
@@ -656,10 +690,13 @@ fn half_swings(formatter: &mut fmt::Formatter<'_>, lost: &Expr, size: &Expr) -> 
 fn action(formatter: &mut fmt::Formatter<'_>, rate: &Expr, pendulum: bool) -> fmt::Result {
     write!(
         formatter,
-        "for any amplitude the action J, 1/(2*pi) of the area of the orbit, decays as J(A)*exp(-({rate})*t)"
+        "for any amplitude the action J, 1/(2*pi) of the area of the orbit, decays as J({AMPLITUDE})*exp(-({rate})*t)"
     )?;
     match pendulum {
-        true => formatter.write_str("; J = (8/pi)*(E(m) - (1 - m)*K(m)), m = sin(a/2)^2"),
+        true => write!(
+            formatter,
+            "; J = (8/pi)*(E(m) - (1 - m)*K(m)), m = sin({FIRST_HARMONIC}/2)^2"
+        ),
         false => Ok(()),
     }
 }
@@ -801,7 +838,7 @@ impl fmt::Display for Cut {
 }
 
 fn truncated(formatter: &mut fmt::Formatter<'_>, small: &[Symbol], order: u32, marks: Option<&Expr>) -> fmt::Result {
-    let names: Vec<&str> = small.iter().map(|name| name.name()).collect();
+    let names: Vec<&str> = small.iter().map(|name| name.written()).collect();
     let (first, others) = match names.split_first() {
         Some((first, others)) => (*first, others.join(" and ")),
         None => ("", String::new()),
@@ -832,7 +869,7 @@ fn root(formatter: &mut fmt::Formatter<'_>, linear_frequency: Option<Symbol>) ->
     match linear_frequency {
         Some(name) => write!(
             formatter,
-            "the frequency is the root that continues {name}^2 from A = 0"
+            "the frequency is the root that continues {name}^2 from {AMPLITUDE} = 0"
         ),
         None => formatter.write_str("the frequency is the root that continues the one of order 1"),
     }
@@ -870,19 +907,22 @@ fn bounds(formatter: &mut fmt::Formatter<'_>, at_rest: &Expr, at_turning: &Expr,
     if let BoundsHold::UpTo(place) = range {
         return write!(
             formatter,
-            "omega^2 lies between the least and the largest of f(x)/x: {at_rest} and {at_turning} up to A = {}, \
+            "{FREQUENCY}^2 lies between the least and the largest of f(x)/x: {at_rest} and {at_turning} up to {AMPLITUDE} = {}, \
              where f(x)/x turns back",
             decimal(*place)
         );
     }
-    write!(formatter, "omega^2 lies between {at_rest} and {at_turning}")?;
+    write!(formatter, "{FREQUENCY}^2 lies between {at_rest} and {at_turning}")?;
     if let BoundsHold::While {
         slope,
         coordinate,
         positive,
     } = range
     {
-        write!(formatter, " while {slope} keeps its sign for 0 < {coordinate} < A")?;
+        write!(
+            formatter,
+            " while {slope} keeps its sign for 0 < {coordinate} < {AMPLITUDE}"
+        )?;
         if let Some(letters) = positive {
             write!(formatter, ", as it does for positive {}", listed(letters))?;
         }

@@ -31,7 +31,8 @@ pub(super) fn of_frequency(solution: &Solution, at: &Values) -> (String, Values)
         _ if !solution.numerical || solution.slow().is_some() => None,
         Shown::Squared(law) => Some(("omega^2", Expr::from(law))),
         Shown::Frequency(law) => Some(("omega", Expr::from(law))),
-        Shown::Closed(form) => Some((form.name(), form.value.clone())),
+        Shown::Closed(form) if form.squared => Some(("omega^2", form.value.clone())),
+        Shown::Closed(form) => Some(("omega", form.value.clone())),
         _ => None,
     };
     let law = match exactly {

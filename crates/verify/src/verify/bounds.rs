@@ -15,6 +15,7 @@ use crate::numeric::ode::root::find_root;
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
+use crate::symbol::letters::{AMPLITUDE, FREQUENCY};
 
 /// How far `f/x` must have moved to count, relatively: less may be rounding.
 const VISIBLE: f64 = 1e-12;
@@ -50,20 +51,23 @@ pub(super) fn bounds(oscillator: &Oscillator, solution: &Solution, numbers: &BTr
     };
     let turn = turns(&course);
     let text = match (turn, outside) {
-        _ if !beyond(largest, least) => format!("{quotient} is {} at every {x} up to A: omega^2 is that", number(end)),
+        _ if !beyond(largest, least) => format!(
+            "{quotient} is {} at every {x} up to {AMPLITUDE}: {FREQUENCY}^2 is that",
+            number(end)
+        ),
         (None, _) => format!(
-            "{quotient} {way} all the way from {} at rest to {} at {x} = A: omega^2 lies between them",
+            "{quotient} {way} all the way from {} at rest to {} at {x} = {AMPLITUDE}: {FREQUENCY}^2 lies between them",
             number(rest),
             number(end)
         ),
         (Some(place), false) => format!(
-            "{quotient} turns back at {x} = {} but stays between {} at rest and {} at {x} = A: omega^2 lies between them",
+            "{quotient} turns back at {x} = {} but stays between {} at rest and {} at {x} = {AMPLITUDE}: {FREQUENCY}^2 lies between them",
             number(place),
             number(rest),
             number(end)
         ),
         (Some(place), true) => format!(
-            "{quotient} turns back at {x} = {}, before A: omega^2 lies between its least and its largest value up to A, {} and {}",
+            "{quotient} turns back at {x} = {}, before {AMPLITUDE}: {FREQUENCY}^2 lies between its least and its largest value up to {AMPLITUDE}, {} and {}",
             number(place),
             number(least),
             number(largest)

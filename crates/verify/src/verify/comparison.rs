@@ -21,6 +21,7 @@ use crate::method::{Options, Refusal, Unsuited, solve, with_resonance_at};
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::symbol::Symbol;
+use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY, Letters};
 use crate::values::Values;
 
 /// A method that applies.
@@ -54,6 +55,14 @@ impl Row {
             .iter()
             .filter(|_| self.solution.method == Method::HomotopyAnalysis);
         own.copied().find(|entry| entry.0 == hbar)
+    }
+}
+
+impl Comparison {
+    /// The letters of its formulas: those of the first answer.
+    pub fn letters(&self) -> Letters {
+        let first = self.rows.first().map(|row| row.solution.letters());
+        first.unwrap_or_else(|| Letters::beside(&[], false))
     }
 }
 
@@ -96,7 +105,7 @@ pub enum ComparisonError {
     #[error("no method applies{}", .0.first().map_or(String::new(), |first| format!(": {}", first.reason)))]
     NoMethod(Vec<Refused>),
     /// No curve of omega against the amplitude: why not, in words.
-    #[error("there is no curve of omega against the amplitude: {0}")]
+    #[error("there is no curve of {omega} against the amplitude: {0}", omega = FREQUENCY)]
     NoBackbone(&'static str),
     /// There is no true motion to compare with.
     #[error(transparent)]
@@ -159,6 +168,7 @@ pub fn compare(
     small: Option<&str>,
     tolerance: f64,
 ) -> Result<Comparison, ComparisonError> {
+    let _letters = oscillator.letters().in_force();
     // A force too long to be written out stops every method at the same place: once is enough.
     if let Err(error) = oscillator.parts() {
         let reason = Refusal::from(error);
@@ -313,8 +323,12 @@ fn driven(
         frequency = frequency.or(judged.frequency);
         let largest = judged.steady_states.iter().find(|judged| judged.state.is_stable());
         let words = match largest.map(|judged| (judged.state.amplitude, judged.true_amplitude)) {
-            Some((own, Some(truth))) => format!("a = {} against a true {}", significant(own, 6), significant(truth, 6)),
-            Some((own, None)) => format!("a = {}, and no true motion near it", significant(own, 6)),
+            Some((own, Some(truth))) => format!(
+                "{FIRST_HARMONIC} = {} against a true {}",
+                significant(own, 6),
+                significant(truth, 6)
+            ),
+            Some((own, None)) => format!("{FIRST_HARMONIC} = {}, and no true motion near it", significant(own, 6)),
             None => "no stable steady motion".to_owned(),
         };
         validity.push(format!(
@@ -366,7 +380,7 @@ fn of_transients(
         truth = truth.or(Some(judged.true_frequency));
         if let (Some(followed), true) = (&judged.followed, validity.is_empty()) {
             validity.push(format!(
-                "released at rest from A and followed to t = {}: {}; its frequency is pi over the mean time between its \
+                "released at rest from {AMPLITUDE} and followed to t = {}: {}; its frequency is pi over the mean time between its \
                  passages through the equilibrium",
                 decimal(followed.until),
                 followed.reason

@@ -19,6 +19,7 @@ use crate::numeric::ode::{Options, State, integrate};
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Solution};
 use crate::symbol::Symbol;
+use crate::symbol::letters::AMPLITUDE;
 use crate::values::Values;
 
 /// How many periods of the slowest part are followed, and of the fastest at most.
@@ -171,7 +172,11 @@ pub(super) fn judge(
         slope: None,
         over_several_wells: false,
         ranges: vec![Range {
-            text: format!("followed from rest at A = {} to t = {}", decimal(start), decimal(until)),
+            text: format!(
+                "followed from rest at {AMPLITUDE} = {} to t = {}",
+                decimal(start),
+                decimal(until)
+            ),
             outside: false,
         }],
         chosen: vec![],

@@ -58,6 +58,7 @@ use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Note, Solution};
 use crate::symbol::Symbol;
+use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY};
 use crate::trajectory::TrajectoryError;
 use crate::values::Values;
 
@@ -178,7 +179,7 @@ impl Verification {
 #[non_exhaustive]
 pub enum VerificationError {
     /// Values are missing.
-    #[error("to judge the formula, values are needed for: {}", .0.iter().map(|name| name.name()).collect::<Vec<_>>().join(", "))]
+    #[error("to judge the formula, values are needed for: {}", .0.iter().map(|name| name.written()).collect::<Vec<_>>().join(", "))]
     Missing(Vec<Symbol>),
     /// A value for a symbol that does not occur.
     #[error("`{name}` does not occur in the formula{}", letters_of(known))]
@@ -227,7 +228,10 @@ pub enum VerificationError {
     )]
     NoPath,
     /// A start off the limit cycle that a formula describes.
-    #[error("x(0) = A is a start off the limit cycle, and this method describes the cycle alone")]
+    #[error(
+        "x(0) = {} is a start off the limit cycle, and this method describes the cycle alone",
+        AMPLITUDE
+    )]
     OffCycle,
     /// A motion that dies out or grows before it swings.
     #[error("the true motion does not swing: it goes through its equilibrium less than twice")]
@@ -265,7 +269,7 @@ impl VerificationError {
 
 /// The letters that there are, after "does not occur in the formula".
 fn letters_of(known: &[Symbol]) -> String {
-    let names: Vec<&str> = known.iter().map(|name| name.name()).collect();
+    let names: Vec<&str> = known.iter().map(|name| name.written()).collect();
     match names.is_empty() {
         true => ", which has no letters: it is judged without values, by `--tolerance 0.01` say".to_owned(),
         false => format!("; it has: {}", names.join(", ")),
@@ -351,6 +355,7 @@ pub fn judge_to(
     tolerance: f64,
     extent: Extent,
 ) -> Result<Verification, VerificationError> {
+    let _letters = solution.letters().in_force();
     if let Some(relative) = in_another_coordinate(oscillator, solution)? {
         return judge_to(&relative, solution, at, tolerance, extent);
     }
@@ -507,7 +512,7 @@ fn in_convention_of(
         AmplitudeConvention::FirstHarmonic => (converted, size),
     };
     let in_words = format!(
-        "the true motion released from rest at A = {} has the first harmonic a = {}; the formula is written in {}",
+        "the true motion released from rest at {AMPLITUDE} = {} has the first harmonic {FIRST_HARMONIC} = {}; the formula is written in {}",
         decimal(release),
         decimal(harmonic),
         wanted.symbol()
@@ -537,7 +542,7 @@ fn cancellation(
     let value_of = |symbol: Symbol| numbers.get(&symbol).copied();
     let motion = max_deviation.zip(solution.rounding_of_motion_at(&value_of));
     let motion = motion.filter(|(deviation, rounding)| *rounding > (OF_DEVIATION * deviation).max(SHOWN));
-    let law = law.map(|rounding| said("omega^2", rounding, "itself"));
+    let law = law.map(|rounding| said(&format!("{FREQUENCY}^2"), rounding, "itself"));
     let motion = motion.map(|(_, rounding)| said("the motion", rounding, "the amplitude"));
     law.into_iter().chain(motion).collect()
 }

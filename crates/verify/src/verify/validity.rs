@@ -19,6 +19,7 @@ use crate::numeric::ode::root::find_root;
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::symbol::Symbol;
+use crate::symbol::letters::of_frequency;
 
 pub use super::reach::Reach;
 
@@ -217,7 +218,7 @@ fn positive_from(
     let last = values.windows(2).rposition(|pair| pair[0] <= 0.0 && pair[1] > 0.0)?;
     let zero = find_root(squared, place(last), place(last + 1)).ok()?;
     let at = significant(zero.copysign(amplitude), 6);
-    let law = law_name(solution);
+    let law = of_frequency(law_name(solution));
     Some(Range {
         text: format!("{law} of the formula is positive from {symbol} = {at} on"),
         outside: amplitude.abs() <= zero,
@@ -274,7 +275,10 @@ fn vanishing(
             return Some(Range {
                 text: match is_pole {
                     true => format!("the formula has a pole at {symbol} = {at}"),
-                    false => format!("{} of the formula reaches zero at {symbol} = {at}", law_name(solution)),
+                    false => format!(
+                        "{} of the formula reaches zero at {symbol} = {at}",
+                        of_frequency(law_name(solution))
+                    ),
                 },
                 outside: amplitude.abs() >= zero,
             });

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use strsim::osa_distance;
 
+use super::Parser;
 use super::error::{ParseError, shortened};
 use super::lexer::{Kind, Token};
-use super::{NAMES_OF_ANSWERS, Parser};
 use crate::expr::Function;
 use crate::symbol::{GREEK, Symbol};
 
@@ -29,15 +29,6 @@ impl Parser<'_> {
             let bare = name.trim_end_matches('\'');
             if bare.len() == name.len() || Function::from_name(bare).is_some() || bare == "t" || bare == "pi" {
                 continue;
-            }
-            if NAMES_OF_ANSWERS.contains(&bare) {
-                let meaning = if bare == "omega" {
-                    "the frequency"
-                } else {
-                    "the amplitude"
-                };
-                let message = format!("`{bare}` is reserved: it is {meaning} in the answer");
-                return Err(self.error(token.span(), &message, "another name, such as `x`"));
             }
             if !is_letter(bare) {
                 let message = format!("`{name}`: primes belong to a single letter or a Greek one");

@@ -4,6 +4,8 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use crate::symbol::letters::Letters;
+
 /// What `work` makes of each item, in their order.
 pub fn each<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec<T> {
     let results: Vec<Mutex<Option<T>>> = items.iter().map(|_| Mutex::new(None)).collect();
@@ -19,6 +21,11 @@ pub fn each<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec
 
 /// Every number up to this one; a function of its own, so that it is built once for all kinds of work.
 fn run(count: usize, work: &(dyn Fn(usize) + Sync)) {
+    let letters = Letters::here();
+    let work = &|number| {
+        let _letters = letters.exactly();
+        work(number);
+    };
     #[cfg(feature = "parallel")]
     rayon::iter::ParallelIterator::for_each(rayon::iter::IntoParallelIterator::into_par_iter(0..count), work);
     #[cfg(not(feature = "parallel"))]

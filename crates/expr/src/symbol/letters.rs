@@ -1,0 +1,192 @@
+//! The letters of an answer: how its amplitudes and its frequency are written beside the names of an equation.
+//!
+//! In an answer the amplitude is `A`, that of the first harmonic `a`, the frequency `omega`. Where an equation has one of these names
+//! for something of its own, the equation keeps it, and the answer takes another. Inside the crate the symbols of an answer are the same
+//! for every equation, those of such an equation are [apart](Symbol::apart), and [`Letters`] in force say how the former are printed:
+//! in formulas and in sentences, in every format.
+
+use std::cell::Cell;
+use std::marker::PhantomData;
+
+use super::{Symbol, fresh};
+
+/// The amplitude at the start.
+pub(crate) const AMPLITUDE: Symbol = Symbol("A");
+/// The amplitude of the first harmonic.
+pub(crate) const FIRST_HARMONIC: Symbol = Symbol("a");
+/// The frequency.
+pub(crate) const FREQUENCY: Symbol = Symbol("omega");
+
+/// The letters of an answer, as they are printed.
+///
+/// ```
+/// use lindstedt::expr::{Expr, Letters};
+/// use lindstedt::Symbol;
+///
+/// let letters = Letters::beside(&["omega".into()], false);
+/// assert_eq!((letters.amplitude.name(), letters.frequency.name()), ("A", "Omega"));
+/// let ratio = Expr::divide(&Expr::symbol("omega"), &Expr::from(Symbol::new("omega").apart()))?;
+/// let in_force = letters.in_force();
+/// assert_eq!(ratio.to_string(), "Omega/omega");
+/// # drop(in_force);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Letters {
+    /// The amplitude at the start, `A` where the equation has no such name.
+    pub amplitude: Symbol,
+    /// The amplitude of the first harmonic and of slow equations, `a` likewise.
+    pub first_harmonic: Symbol,
+    /// The frequency, `omega` likewise.
+    pub frequency: Symbol,
+}
+
+/// The letters of most answers.
+const USUAL: Letters = Letters {
+    amplitude: AMPLITUDE,
+    first_harmonic: FIRST_HARMONIC,
+    frequency: FREQUENCY,
+};
+
+thread_local! {
+    static IN_FORCE: Cell<Letters> = const { Cell::new(USUAL) };
+}
+
+/// Letters are in force on this thread until this value is dropped.
+#[must_use]
+pub struct InForce {
+    before: Letters,
+    of_this_thread: PhantomData<*const ()>,
+}
+
+impl Drop for InForce {
+    fn drop(&mut self) {
+        IN_FORCE.set(self.before);
+    }
+}
+
+impl Letters {
+    /// The letters of an answer to an equation that has these names: those that it leaves free. A `driven` equation has its `Omega`
+    /// for the drive.
+    pub fn beside(names: &[Symbol], driven: bool) -> Self {
+        let clash = |own: &Symbol| {
+            [AMPLITUDE, FIRST_HARMONIC, FREQUENCY]
+                .iter()
+                .any(|usual| usual.name() == own.name())
+        };
+        if !names.iter().any(clash) {
+            return USUAL;
+        }
+        let mut taken = names.to_vec();
+        let mut free = |usual: Symbol, others: &[&str]| {
+            let is_free = |name: &str| taken.iter().all(|symbol| symbol.name() != name);
+            let first = std::iter::once(usual.name())
+                .chain(others.iter().copied())
+                .find(|name| is_free(name));
+            let letter = first.map_or_else(|| fresh(usual.name(), &taken), Symbol::new);
+            taken.push(letter);
+            letter
+        };
+        let frequencies: &[&str] = if driven { &["nu", "w"] } else { &["Omega", "nu", "w"] };
+        Self {
+            amplitude: free(AMPLITUDE, &["C", "X", "A_0"]),
+            first_harmonic: free(FIRST_HARMONIC, &["r", "rho", "a_1"]),
+            frequency: free(FREQUENCY, frequencies),
+        }
+    }
+
+    /// Those that are in force on this thread, where they are not the usual ones.
+    pub fn current() -> Option<Self> {
+        Some(IN_FORCE.get()).filter(|letters| *letters != USUAL)
+    }
+
+    /// Puts these letters in force on this thread, until what is returned is dropped; unusual ones that are in force already stay, for
+    /// they belong to the equation that was asked about.
+    pub fn in_force(self) -> InForce {
+        Self::current().unwrap_or(self).exactly()
+    }
+
+    /// Puts these letters in force in any case: for work that goes on on another thread.
+    pub(crate) fn exactly(self) -> InForce {
+        InForce {
+            before: IN_FORCE.replace(self),
+            of_this_thread: PhantomData,
+        }
+    }
+
+    /// The letters that are in force on this thread, the usual ones included.
+    pub(crate) fn here() -> Self {
+        IN_FORCE.get()
+    }
+
+    /// Those that are not the usual ones: each the symbol of the answer and how it is written.
+    pub fn unusual(&self) -> impl Iterator<Item = (Symbol, Symbol)> {
+        let pairs = [
+            (AMPLITUDE, self.amplitude),
+            (FIRST_HARMONIC, self.first_harmonic),
+            (FREQUENCY, self.frequency),
+        ];
+        pairs.into_iter().filter(|(usual, written)| usual != written)
+    }
+
+    /// The symbol that a person means by this name beside an equation with these names: one of the equation, or else the one that is
+    /// written so in the answer.
+    pub fn meant(&self, name: Symbol, names: &[Symbol]) -> Symbol {
+        if let Some(own) = names.iter().find(|own| own.name() == name.name()) {
+            return *own;
+        }
+        let written = self.unusual().find(|(_, written)| *written == name);
+        written.map_or(name, |(usual, _)| usual)
+    }
+}
+
+/// The name of a symbol as it is printed on this thread.
+pub(super) fn written(symbol: Symbol) -> &'static str {
+    let Some(letters) = Letters::current() else {
+        return symbol.name();
+    };
+    let bare = symbol.0.trim_end_matches('\'');
+    let Some((_, letter)) = letters.unusual().find(|(usual, _)| usual.0 == bare) else {
+        return symbol.name();
+    };
+    match symbol.primes() {
+        0 => letter.name(),
+        primes => Symbol::new(&(letter.name().to_owned() + &"'".repeat(primes))).name(),
+    }
+}
+
+/// Words in which the frequency is called by its usual letter, with the one that is in force.
+pub(crate) fn of_frequency(words: &str) -> String {
+    words.replace(FREQUENCY.name(), FREQUENCY.written())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn letters_of_an_answer_give_way_to_those_of_the_equation() {
+        let names = |letters: Letters| [letters.amplitude, letters.first_harmonic, letters.frequency].map(Symbol::name);
+        assert_eq!(names(Letters::beside(&["x".into()], false)), ["A", "a", "omega"]);
+        let all = ["A", "C", "a", "omega"].map(Symbol::new);
+        assert_eq!(names(Letters::beside(&all, false)), ["X", "r", "Omega"]);
+        assert_eq!(names(Letters::beside(&all, true)), ["X", "r", "nu"]);
+    }
+
+    #[test]
+    fn letters_are_in_force_until_they_are_dropped() {
+        let (answer, equation) = (Symbol::new("a"), Symbol::new("a").apart());
+        assert_eq!(equation.derivative().to_string(), "a'");
+        assert_eq!(equation.derivative().coordinate(), equation);
+        let letters = Letters::beside(&[equation], false);
+        {
+            let _letters = letters.in_force();
+            assert_eq!(format!("{answer} {} {equation}", answer.derivative()), "r r' a");
+            let _others = Letters::beside(&["omega".into()], false).in_force();
+            assert_eq!(answer.to_string(), "r");
+        }
+        assert_eq!(answer.to_string(), "a");
+        assert_eq!(letters.meant("r".into(), &[equation]), answer);
+        assert_eq!(letters.meant("a".into(), &[equation]), equation);
+    }
+}

@@ -51,7 +51,7 @@ impl Symbol {
         self.0.strip_suffix(APART).unwrap_or(self.0)
     }
 
-    /// The name as it is printed: that of something in an answer gives way to the same name of an equation, see [`Letters`].
+    /// The name as it is printed: that of something in an answer gives way to the same name of an equation, see `Letters`.
     pub fn written(self) -> &'static str {
         letters::written(self)
     }
@@ -59,6 +59,7 @@ impl Symbol {
     /// A symbol of the same name for something in an equation, which is not the symbol of that name in an answer.
     ///
     /// ```
+    /// # use lindstedt_expr as lindstedt;
     /// use lindstedt::Symbol;
     /// let (frequency, parameter) = (Symbol::new("omega"), Symbol::new("omega").apart());
     /// assert_eq!(parameter.name(), frequency.name());

@@ -1,6 +1,5 @@
 //! The kinds of documents and the JSON Schema of each.
 
-
 use super::{JsonError, unexpected};
 
 /// A kind of document.

@@ -11,15 +11,16 @@ use std::marker::PhantomData;
 use super::{Symbol, fresh};
 
 /// The amplitude at the start.
-pub(crate) const AMPLITUDE: Symbol = Symbol("A");
+pub const AMPLITUDE: Symbol = Symbol("A");
 /// The amplitude of the first harmonic.
-pub(crate) const FIRST_HARMONIC: Symbol = Symbol("a");
+pub const FIRST_HARMONIC: Symbol = Symbol("a");
 /// The frequency.
-pub(crate) const FREQUENCY: Symbol = Symbol("omega");
+pub const FREQUENCY: Symbol = Symbol("omega");
 
 /// The letters of an answer, as they are printed.
 ///
 /// ```
+/// # use lindstedt_expr as lindstedt;
 /// use lindstedt::expr::{Expr, Letters};
 /// use lindstedt::Symbol;
 ///
@@ -156,7 +157,7 @@ pub(super) fn written(symbol: Symbol) -> &'static str {
 }
 
 /// Words in which the frequency is called by its usual letter, with the one that is in force.
-pub(crate) fn of_frequency(words: &str) -> String {
+pub fn of_frequency(words: &str) -> String {
     words.replace(FREQUENCY.name(), FREQUENCY.written())
 }
 

@@ -34,7 +34,7 @@ impl Layers {
 }
 
 /// The members of the workspace by the way of the data, lowest first; the package of the program stands above them all.
-const CRATES: [&str; 7] = ["numeric", "expr", "series", "dynamics", "oscillator", "verify", "impact"];
+const CRATES: [&str; 7] = [
     "numeric",
     "expr",
     "series",

@@ -154,6 +154,8 @@ pub(super) fn solved(arguments: &Question, names: Names) -> Result<Solved, Failu
         .map(|values| with_new_names(values, &renamed, &oscillator))
         .transpose()?;
     let mut notes = notes_on_names(&oscillator, values.as_ref(), &renamed);
+    // A name that is no function may be why the equation is refused.
+    let misleading: Vec<String> = notes.iter().filter(|note| matches!(note, Note::Misleading { .. })).map(Note::to_string).collect();
     let coordinate = oscillator.coordinate;
     let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
     let options = match &values {
@@ -178,6 +180,7 @@ pub(super) fn solved(arguments: &Question, names: Names) -> Result<Solved, Failu
             })
         })
     })
+    .map_err(|failure: Failure| failure.with_notes(&misleading))
 }
 
 /// Refuses values that the formula does not have, and asks for those that it needs.

@@ -247,6 +247,14 @@ impl Failure {
         })
     }
 
+    /// A refusal with what else may be behind it.
+    fn with_notes(self, notes: &[String]) -> Self {
+        match self {
+            Self::Refused(text) => Self::Refused(notes.iter().fold(text, |text, note| text + "\n  note: " + note)),
+            Self::Usage(text) => Self::Usage(text),
+        }
+    }
+
     /// A refusal with the advice of the library.
     fn advised(error: &impl Display, advice: Option<Advice>) -> Self {
         Self::refused(error, advice.as_ref().map(in_flags))

@@ -503,7 +503,7 @@ mod tests {
     fn products_of_values_are_values_of_products() {
         for count in [2, 3, 8, 15, 40] {
             for half_wave in [true, false] {
-                Products { count, half_wave }.by(Portable::new());
+                Products { count, half_wave }.by(Portable);
                 by_widest(Products { count, half_wave });
             }
         }

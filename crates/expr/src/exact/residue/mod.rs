@@ -54,7 +54,7 @@ pub fn by_widest<W: Work>(work: W) -> W::Output {
     if let Some(narrow) = narrow::Narrow::try_new() {
         return work.by(narrow);
     }
-    work.by(portable::Portable::new())
+    work.by(portable::Portable)
 }
 
 /// A prime, and what Montgomery's multiplication needs beside it. Residues are below the prime and stand for themselves times

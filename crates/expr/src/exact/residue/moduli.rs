@@ -284,7 +284,7 @@ mod tests {
 
     #[test]
     fn eight_primes_are_as_each_alone() {
-        AsOneByOne.by(Portable::new());
+        AsOneByOne.by(Portable);
         by_widest(AsOneByOne);
     }
 }

@@ -1,26 +1,15 @@
 //! Sums of products on any processor: residues of 30 binary digits, multiplied in words of 64, which compilers turn into the
 //! vector instructions that there are.
 
-use pulp::{Arch, NullaryFnOnce, Simd, WithSimd};
+use pulp::NullaryFnOnce;
+#[cfg(not(target_arch = "x86_64"))]
+use pulp::{Arch, Simd, WithSimd};
 
 use super::{Arithmetic, Lanes, Moduli, WIDTH};
 
 /// Any processor.
-#[derive(Clone, Copy, Debug)]
-pub struct Portable(Arch);
-
-impl Default for Portable {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl Portable {
-    /// With the vector instructions that are there at run time.
-    pub fn new() -> Self {
-        Self(Arch::new())
-    }
-}
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Portable;
 
 /// Products not carried yet, and the sums of the low and of the high halves of those that are.
 #[derive(Clone, Copy)]
@@ -133,13 +122,19 @@ impl Arithmetic for Portable {
     }
     #[inline(always)]
     fn vectorize<F: NullaryFnOnce>(self, function: F) -> F::Output {
-        self.0.dispatch(Vectorized(function))
+        // On x86-64 the arithmetics with more than the least vector instructions are others, so nothing is chosen here.
+        #[cfg(target_arch = "x86_64")]
+        return function.call();
+        #[cfg(not(target_arch = "x86_64"))]
+        return Arch::new().dispatch(Vectorized(function));
     }
 }
 
 /// A function for every set of vector instructions.
+#[cfg(not(target_arch = "x86_64"))]
 struct Vectorized<F>(F);
 
+#[cfg(not(target_arch = "x86_64"))]
 impl<F: NullaryFnOnce> WithSimd for Vectorized<F> {
     type Output = F::Output;
 

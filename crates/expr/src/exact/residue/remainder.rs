@@ -284,7 +284,7 @@ mod tests {
 
     #[test]
     fn a_number_is_what_its_residues_say() {
-        ThereAndBack.by(Portable::new());
+        ThereAndBack.by(Portable);
         by_widest(ThereAndBack);
     }
 

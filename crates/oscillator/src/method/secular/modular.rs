@@ -296,7 +296,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     /// Everything that is wanted, modulo each of up to eight primes; the motion from the order on that is `wanted` of each. `None`
     /// where a divisor is a multiple of a prime, where a secular sine stays (the ring's own recursion says which), and where it is
     /// stopped.
-    pub fn images(&mut self, primes: &[u64], wanted: impl Fn(usize) -> usize) -> Option<Vec<Image>> {
+    pub fn images(&mut self, primes: &[u64], wanted: &dyn Fn(usize) -> usize) -> Option<Vec<Image>> {
         let moduli: Vec<Modulus> = primes.iter().map(|prime| Modulus::new(*prime, A::RADIX)).collect();
         let mut field = Field::new(self.arithmetic, self.plan, &moduli)?;
         let coefficients = std::mem::take(&mut field.coefficients);

@@ -256,7 +256,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
 
     /// Images of the primes from `self.first.len()` on, in eights, until there are `count`, each from the order on that it is wanted
     /// for; fewer where the work is stopped.
-    fn images(&mut self, count: usize, wanted: impl Fn(usize) -> usize + Sync) -> Option<Vec<Image>> {
+    fn images(&mut self, count: usize, wanted: &(dyn Fn(usize) -> usize + Sync)) -> Option<Vec<Image>> {
         /// Eights of a lot use the same memory; after so many lots for each thread all threads meet, so that what is there when the
         /// work is stopped has no gaps.
         const LOT: usize = 8;
@@ -276,7 +276,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             let mut images = Vec::with_capacity(places.len());
             for eight in places.chunks(WIDTH) {
                 let primes = &this.primes[eight[0]..eight[0] + eight.len()];
-                match recursion.images(primes, |lane| wanted(eight[lane])) {
+                match recursion.images(primes, &|lane| wanted(eight[lane])) {
                     Some(own) => images.extend(own),
                     None if interrupt.is_requested() => break,
                     None => return None,
@@ -322,7 +322,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
                 return None;
             }
             let from = if self.extent == Extent::Motion { 0 } else { usize::MAX };
-            let more = self.images(count, |_| from)?;
+            let more = self.images(count, &|_| from)?;
             self.first.extend(more);
             if self.first.len() < count {
                 return None;
@@ -394,7 +394,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         self.supervision
             .progress
             .begin((most + 1).saturating_sub(self.first.len()));
-        let images: Vec<Image> = self.images(most + 1, wanted)?;
+        let images: Vec<Image> = self.images(most + 1, &wanted)?;
         let all: Vec<&Image> = self.first.iter().chain(&images).collect();
         let stopped = self.supervision.interrupt.is_requested();
         if all.len() <= most && !stopped {
@@ -736,7 +736,7 @@ mod tests {
                     orders: vec![],
                     supervision: Supervision::default(),
                 };
-                let portable = by_primes.by(Portable::new()).expect("the same by primes");
+                let portable = by_primes.by(Portable).expect("the same by primes");
                 let alone = super::expand(force, highest, &scheme, Extent::Frequency, Supervision::default());
                 let alone = alone.unwrap_or_else(|| panic!("{force:?} {scheme:?}"));
                 assert_eq!(alone.frequency_squared, exact.frequency_squared, "{scheme:?}");

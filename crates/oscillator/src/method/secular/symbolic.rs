@@ -596,7 +596,7 @@ mod tests {
                     super::super::expand(&Polynomials(Integers), force, highest, &scheme).expect("an expansion");
                 let nobody = Supervision::default();
                 let widest = expand(force, highest, &scheme, Extent::Motion, nobody).expect("the same by primes");
-                let portable = Expand(force, highest, scheme, Extent::Motion, nobody).by(Portable::new());
+                let portable = Expand(force, highest, scheme, Extent::Motion, nobody).by(Portable);
                 let alone = expand(force, highest, &scheme, Extent::Frequency, nobody).expect("the frequency");
                 assert_eq!(alone.frequency_squared, exact.frequency_squared);
                 assert_eq!(alone.frequency, exact.frequency);
@@ -690,7 +690,7 @@ mod tests {
         let lower_set = LowerSet::new(&weights, 0, 6, 1000).expect("few points");
         let plan = Plan::new(&terms, None, 6, scheme, false).expect("symmetry");
         let search = Search {
-            arithmetic: Portable::new(),
+            arithmetic: Portable,
             plan: &plan,
             groups: &groups,
             lower_set: &lower_set,

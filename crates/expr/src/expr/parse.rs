@@ -715,12 +715,6 @@ mod tests {
             ("__import__(\"os\").getcwd()", "_", "a name begins with a letter", ""),
             ("|x|", "|", "`|` is no sign here", "the absolute value is `abs(x)`"),
             (
-                "A''+A",
-                "A''",
-                "`A` is reserved: it is the amplitude in the answer",
-                "another name, such as `x`",
-            ),
-            (
                 "u'' + x",
                 "x",
                 "`x` beside the coordinate `u`",

@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use lindstedt::audit::paper;
 use lindstedt::export::json;
-use lindstedt::mechanics::{MechanismQuestion, study};
+use lindstedt::mechanics::study;
 use lindstedt::problem::{Problem, Reader};
 use lindstedt::report;
 
@@ -40,7 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         ));
     }
     let (mut question, problem) = match &arguments.file {
-        None => (MechanismQuestion::of_paper(), Problem::default()),
+        None => (paper::mechanism(), Problem::default()),
         Some(path) => {
             let problem = from_file(path)?;
             problem
@@ -56,12 +57,25 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         .unwrap_or_default()
         .numbers();
     let study = study(question).map_err(|error| Failure::refused(&error, error.help()))?;
+    // The printed equations stand beside the derived ones where the mechanism is the paper's.
+    let findings = match &arguments.file {
+        None => paper::findings().map_err(|error| Failure::refused(&error, None))?,
+        Some(_) => Vec::new(),
+    };
+    let mut document = report::mechanism(&study);
+    if !findings.is_empty() {
+        document.sections.push(report::paper_equations(&findings));
+    }
     let answer = Answer {
-        document: &report::mechanism(&study),
+        document: &document,
         width: width(common.output.as_deref()),
         picture: None,
         other: &|format| match format {
-            Format::Json => json_text(&json::lagrangian(&study)),
+            Format::Json => {
+                let mut document = json::lagrangian(&study);
+                document.findings = json::lagrangian::findings(&findings);
+                json_text(&document)
+            }
             format => no_such(format),
         },
     };

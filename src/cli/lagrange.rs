@@ -1,6 +1,6 @@
 //! `lindstedt lagrange [FILE]`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use lindstedt::audit::paper;
@@ -13,11 +13,11 @@ use super::answer::{Answer, no_such};
 use super::derive::exact_values;
 use super::files::width;
 use super::problem::from_file;
-use super::{Common, Failure, Format, Outcome, json_text};
+use super::{Common, Failure, Format, Outcome, Work, json_text};
 
+/// Energies and forces to equations of motion, units checked, dimensionless groups, places of rest and modes
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-#[command(mut_arg("format", super::words_only))]
 pub struct Arguments {
     /// A TOML file with [lagrangian], or - for standard input; without it the paper's pendulum, its equations (1) to (8) beside what follows
     pub file: Option<PathBuf>,
@@ -28,7 +28,21 @@ pub struct Arguments {
     pub common: Common,
 }
 
-pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+impl Work for Arguments {
+    fn common(&self) -> Common {
+        self.common.clone()
+    }
+
+    fn input(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        run(self)
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let common = &arguments.common;
     if common.tolerance.is_some() {
         return Err(Failure::Usage(

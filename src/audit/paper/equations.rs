@@ -12,7 +12,7 @@ use crate::symbol::Symbol;
 /// A printed equation beside what is derived.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// Its number in the paper: `(1)`.
+    /// The number of the equation in the paper: `(1)`.
     pub equation: &'static str,
     /// The printed equation, in the letters of the mechanism.
     pub printed: String,

@@ -1,4 +1,4 @@
-//! What an arctangent in place of Coulomb's sgn does to a pendulum: the laws at single speeds, and the swing near rest.
+//! The effect of an arctangent in place of Coulomb's sgn on a pendulum: the laws at single speeds, and the swing near rest.
 //!
 //! In: a [`FrictionSetup`]: how strong the friction is, and where the swing is released. Out: a [`FrictionStudy`]:
 //!
@@ -22,7 +22,7 @@ use super::model::DEFAULT_AMPLITUDE;
 use super::simulate::SimulationError;
 use crate::decimal::decimal;
 
-/// What is asked of the friction.
+/// The question: a friction and a swing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrictionSetup {
     /// The friction alpha, between 0 and 1: dimensionless, the torque in units of m g L.
@@ -83,7 +83,7 @@ pub enum FrictionError {
 /// The arctangent beside Coulomb's law.
 #[derive(Debug, Clone)]
 pub struct FrictionStudy {
-    /// What was asked.
+    /// The question.
     pub setup: FrictionSetup,
     /// The two laws at the speeds of the setup.
     pub rows: Vec<SpeedRow>,

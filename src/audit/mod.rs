@@ -30,6 +30,7 @@ mod claim;
 mod file;
 mod identity;
 mod options;
+pub mod paper;
 mod printed;
 mod quantity;
 mod unknown;

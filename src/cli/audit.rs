@@ -1,6 +1,6 @@
 //! `lindstedt audit FILE` and `lindstedt paper`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use lindstedt::audit::{Claims, ClaimsError, audit};
@@ -10,14 +10,14 @@ use lindstedt::verify::Verdict;
 
 use super::answer::{Answer, no_such};
 use super::files::{is_standard, width};
-use super::{Common, Failure, Format, Outcome, json_text, read};
+use super::{Common, Failure, Format, Outcome, Work, json_text, read};
 
 /// Every claim of the paper, the file that `lindstedt paper` runs.
 const PAPER: &str = include_str!("../../examples/audit/paper.toml");
 
+/// Claims of a publication from a file, each computed again, with a verdict
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-#[command(mut_arg("format", super::words_only))]
 pub struct Arguments {
     /// A TOML file of claims, or - for standard input
     pub file: PathBuf,
@@ -27,9 +27,9 @@ pub struct Arguments {
     pub common: Common,
 }
 
+/// Every number, equation, table and figure of the paper, computed again, with a verdict
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-#[command(mut_arg("format", super::words_only))]
 pub struct PaperArguments {
     #[command(flatten)]
     own: Own,
@@ -44,7 +44,21 @@ struct Own {
     strict: bool,
 }
 
-pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+impl Work for Arguments {
+    fn common(&self) -> Common {
+        self.common.clone()
+    }
+
+    fn input(&self) -> Option<&Path> {
+        Some(&self.file)
+    }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        run(self)
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let text = read(&arguments.file)?;
     let name = match is_standard(&arguments.file) {
         true => "standard input".into(),
@@ -53,7 +67,17 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     outcome(&text, &name, &arguments.own, &arguments.common)
 }
 
-pub fn run_paper(arguments: &PaperArguments) -> Result<Outcome, Failure> {
+impl Work for PaperArguments {
+    fn common(&self) -> Common {
+        self.common.clone()
+    }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        run_paper(self)
+    }
+}
+
+fn run_paper(arguments: &PaperArguments) -> Result<Outcome, Failure> {
     outcome(PAPER, "the paper", &arguments.own, &arguments.common)
 }
 

@@ -4,17 +4,27 @@ use clap::Args;
 use lindstedt::export::{catalog, html, json};
 
 use super::answer::{no_such, page};
-use super::{Common, Failure, Format, Outcome, json_text, whole};
+use super::{Common, Failure, Format, Outcome, Work, json_text, whole};
 
+/// List the classical oscillators that `derive` knows by name
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-#[command(mut_arg("format", super::words_only))]
 pub struct Arguments {
     #[command(flatten)]
     pub common: Common,
 }
 
-pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+impl Work for Arguments {
+    fn common(&self) -> Common {
+        self.common.clone()
+    }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        run(self)
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.common.plot.is_some() {
         return Err(Failure::Usage("--plot: the catalogue has no picture".to_owned()));
     }

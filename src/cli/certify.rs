@@ -1,6 +1,6 @@
 //! `lindstedt certify PROBLEM` and `lindstedt check FILE`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use lindstedt::certificate::{self, Beyond, Certified, DampedCertificate, NotCertified};
@@ -18,10 +18,10 @@ use super::answer::{Answer, no_such};
 use super::derive::{self, Names, Question, Solved};
 use super::files::width;
 use super::progress::{PROGRESS, with_progress};
-use super::{Common, Failure, Format, Outcome, STOP, json_text, read_at_most, tolerance};
+use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, read_at_most, tolerance};
 
+/// A proof beside a formula: the motion exists, and how far the formula is off, from both sides
 #[derive(Args)]
-#[command(mut_arg("format", super::words_only))]
 #[command(mut_arg("plot", |plot| plot.hide(true)))]
 #[command(mut_arg("output", |output| output.help("Write the result to this file; if its name ends in .json, the certificate that `check` reads")))]
 pub struct Arguments {
@@ -38,8 +38,8 @@ pub struct Arguments {
     pub common: Common,
 }
 
+/// Check a certificate that `certify` wrote, in exact arithmetic
 #[derive(Args)]
-#[command(mut_arg("format", super::words_only))]
 #[command(mut_arg("plot", |plot| plot.hide(true)))]
 #[command(mut_arg("timeout", |timeout| timeout.help("Give up after so many seconds, 60 without it: a certificate may come from anybody")))]
 pub struct CheckArguments {
@@ -63,7 +63,21 @@ fn range(text: &str) -> Result<(Rational, Rational), String> {
         .ok_or_else(|| "expected two positive fractions or decimals, the smaller one first, such as 1/10:3".to_owned())
 }
 
-pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+impl Work for Arguments {
+    fn common(&self) -> Common {
+        self.common.clone()
+    }
+
+    fn input(&self) -> Option<&Path> {
+        super::problem::path(&self.question.problem)
+    }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        run(self)
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     without_picture(&arguments.common)?;
     if arguments.range.is_some() && arguments.common.format() == Format::Json {
         return Err(Failure::Usage(
@@ -163,7 +177,21 @@ fn without_amplitude(
     printed(&report, &arguments.common)
 }
 
-pub fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
+impl Work for CheckArguments {
+    fn common(&self) -> Common {
+        self.common.clone()
+    }
+
+    fn input(&self) -> Option<&Path> {
+        Some(&self.file)
+    }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        check(self)
+    }
+}
+
+fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
     without_picture(&arguments.common)?;
     let file = &arguments.file;
     let refused = |reason: &dyn std::fmt::Display| {

@@ -1,5 +1,7 @@
 //! `lindstedt compare PROBLEM --at A=1.5`.
 
+use std::path::Path;
+
 use clap::Args;
 use lindstedt::export::json;
 use lindstedt::problem::Reader;
@@ -9,15 +11,12 @@ use lindstedt::verify::comparison::{self, Comparison};
 use lindstedt::{Oscillator, verify};
 
 use super::answer::{Answer, no_such};
-use super::derive::{
-    Names, exact_values, formula, named, notes_on_letters, notes_on_names, oscillator, with_known_equilibrium,
-    with_new_names,
-};
+use super::derive::{Names, Numbered, formula, named, notes_on_letters, oscillator, with_values};
 use super::problem::problem;
-use super::{Common, Failure, Format, Outcome, files, json_text, tolerance};
+use super::{Common, Failure, Format, Outcome, Work, files, json_text, tolerance};
 
+/// Every method of the field on one equation, in one table, judged against the true motion
 #[derive(Args)]
-#[command(mut_arg("format", super::without_table))]
 pub struct Arguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     pub problem: String,
@@ -35,19 +34,32 @@ pub struct Arguments {
     pub common: Common,
 }
 
-pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+impl Work for Arguments {
+    fn common(&self) -> Common {
+        self.common.clone()
+    }
+
+    fn input(&self) -> Option<&Path> {
+        super::problem::path(&self.problem)
+    }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        run(self)
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Compare)?;
     let (oscillator, renamed) = named(&oscillator(&formula, arguments.about.as_deref())?, Names::Kept)?;
     let letters = oscillator.letters();
     let _letters = letters.in_force();
     let coordinate = oscillator.coordinate;
-    let values = exact_values(&arguments.at, problem.values_of_motion())?;
-    let values = values
-        .map(|values| with_new_names(values, &renamed, &oscillator))
-        .transpose()?;
-    let notes = notes_on_names(&oscillator, values.as_ref(), &renamed);
-    let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
+    let Numbered {
+        oscillator,
+        values,
+        notes,
+    } = with_values(oscillator, &renamed, &arguments.at, &problem)?;
     let values = values.unwrap_or_default();
     let small = arguments.small.as_deref().or(formula.small);
     if small.is_some() {

@@ -1,5 +1,7 @@
 //! `lindstedt derive PROBLEM`.
 
+use std::path::Path;
+
 use std::time::Duration;
 
 use clap::Args;
@@ -19,7 +21,7 @@ use lindstedt::{Interrupt, Oscillator, Progress, Supervision, Symbol};
 use super::answer::{Draw, drawn, no_such, page, pictured};
 use super::problem::problem;
 use super::progress::{PROGRESS, with_progress};
-use super::{Common, Failure, Format, Outcome, STOP, json_text, tolerance, whole};
+use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, tolerance, whole};
 
 /// An equation, and how it is to be answered.
 #[derive(Args)]
@@ -68,8 +70,8 @@ pub struct Question {
     at: Vec<String>,
 }
 
+/// Derive the frequency law and the motion of an oscillator, to an order
 #[derive(Args)]
-#[command(mut_arg("format", super::with_programs))]
 pub struct Arguments {
     #[command(flatten)]
     pub question: Question,
@@ -149,15 +151,15 @@ pub(super) fn solved(arguments: &Question, names: Names) -> Result<Solved, Failu
             .small_parameter(options.small.as_deref())
             .map_err(|error| Failure::advised(&error, error.help()))?;
     }
-    let values = exact_values(&arguments.at, problem.values_of_motion())?;
-    let values = values
-        .map(|values| with_new_names(values, &renamed, &oscillator))
-        .transpose()?;
-    let mut notes = notes_on_names(&oscillator, values.as_ref(), &renamed);
-    // A name that is no function may be why the equation is refused.
-    let misleading: Vec<String> = notes.iter().filter(|note| matches!(note, Note::Misleading { .. })).map(Note::to_string).collect();
     let coordinate = oscillator.coordinate;
-    let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
+    let Numbered {
+        oscillator,
+        values,
+        mut notes,
+    } = with_values(oscillator, &renamed, &arguments.at, &problem)?;
+    // A name that is no function may be why the equation is refused.
+    let misleading = notes.iter().filter(|note| matches!(note, Note::Misleading { .. }));
+    let misleading: Vec<String> = misleading.map(Note::to_string).collect();
     let options = match &values {
         Some(values) => method::with_resonance_at(&oscillator, &options, values)
             .map_err(|refusal| refused(&oscillator, &refusal))?,
@@ -221,7 +223,21 @@ pub(super) fn with_motion(question: &Question, of_motion: &[(&str, bool)]) -> Re
     }
 }
 
-pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+impl Work for Arguments {
+    fn common(&self) -> Common {
+        self.common.clone()
+    }
+
+    fn input(&self) -> Option<&Path> {
+        super::problem::path(&self.question.problem)
+    }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        run(self)
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let of_motion = [
         ("--steps", arguments.steps),
         ("--plot", arguments.common.plot.is_some()),
@@ -422,13 +438,37 @@ pub(super) fn notes_on_letters(letters: &Letters, coordinate: Symbol, solution: 
     unusual.map(note).collect()
 }
 
+/// An oscillator with the values that are given, once those that its equilibrium needs stand in its equation.
+pub(super) struct Numbered {
+    pub oscillator: Oscillator,
+    pub values: Option<Values>,
+    /// Notes on the names of parameters.
+    pub notes: Vec<Note>,
+}
+
+/// The oscillator with the values of the command line and of the file, under the names that its parameters have after renaming.
+pub(super) fn with_values(
+    oscillator: Oscillator,
+    renamed: &[(Symbol, Symbol)],
+    at: &[String],
+    problem: &Problem,
+) -> Result<Numbered, Failure> {
+    let values = exact_values(at, problem.values_of_motion())?;
+    let values = values
+        .map(|values| with_new_names(values, renamed, &oscillator))
+        .transpose()?;
+    let notes = notes_on_names(&oscillator, values.as_ref(), renamed);
+    let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
+    Ok(Numbered {
+        oscillator,
+        values,
+        notes,
+    })
+}
+
 /// Notes on the names of parameters: those that are written otherwise, and those without a value that look like something
 /// else.
-pub(super) fn notes_on_names(
-    oscillator: &Oscillator,
-    values: Option<&Values>,
-    renamed: &[(Symbol, Symbol)],
-) -> Vec<Note> {
+fn notes_on_names(oscillator: &Oscillator, values: Option<&Values>, renamed: &[(Symbol, Symbol)]) -> Vec<Note> {
     let renamed = renamed.iter().map(|&(typed, written)| Note::Renamed { typed, written });
     let misleading = oscillator.misleading_parameters().into_iter();
     let without_value = |(name, _): &(Symbol, String)| values.is_none_or(|values| values.get(*name).is_none());
@@ -439,11 +479,7 @@ pub(super) fn notes_on_names(
 }
 
 /// The values under the names that they are meant for, those of renamed parameters under their new ones. Where nothing drives the motion a value of `A` is that of the amplitude.
-pub(super) fn with_new_names(
-    values: Values,
-    renamed: &[(Symbol, Symbol)],
-    oscillator: &Oscillator,
-) -> Result<Values, Failure> {
+fn with_new_names(values: Values, renamed: &[(Symbol, Symbol)], oscillator: &Oscillator) -> Result<Values, Failure> {
     let driven = oscillator.force.contains(Symbol::new("t"));
     let mut renamed_values = Values::default();
     for (name, value) in values.iter() {
@@ -467,7 +503,7 @@ pub(super) fn with_new_names(
 }
 
 /// Where the equilibrium in symbols is not that of the numbers given, the equation with those numbers in it.
-pub(super) fn with_known_equilibrium(
+fn with_known_equilibrium(
     oscillator: Oscillator,
     values: Option<Values>,
 ) -> Result<(Oscillator, Option<Values>), Failure> {

@@ -6,8 +6,9 @@ use lindstedt::impact::friction::{FrictionSetup, FrictionStudy, study};
 use lindstedt::report;
 
 use super::answer::{Answer, no_such};
-use super::{Common, Failure, Format, Outcome, json_text};
+use super::{Common, Failure, Format, Outcome, Work, json_text};
 
+/// The arctangent in place of Coulomb's sgn: the paper's Table 1, and what it does to a swing near rest
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
 pub struct Arguments {
@@ -24,7 +25,17 @@ pub struct Arguments {
     pub common: Common,
 }
 
-pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+impl Work for Arguments {
+    fn common(&self) -> Common {
+        self.common.clone()
+    }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        run(self)
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.common.tolerance.is_some() {
         return Err(Failure::Usage(
             "--tolerance: a study of friction compares two laws and has no verdict".to_owned(),

@@ -1,5 +1,7 @@
 //! `lindstedt impact [FILE]`.
 
+use std::path::Path;
+
 use clap::Args;
 use lindstedt::certificate::enclose_impact;
 use lindstedt::exact::Rational;
@@ -13,10 +15,10 @@ use lindstedt::verify::Verdict;
 use super::answer::{Answer, no_such};
 use super::files::width;
 use super::problem::problem;
-use super::{Common, Failure, Format, Outcome, json_text, tolerance};
+use super::{Common, Failure, Format, Outcome, Work, json_text, tolerance};
 
+/// The three phases of a pendulum that hits an elastic barrier, in closed form, checked by Runge-Kutta
 #[derive(Args, Default)]
-#[command(mut_arg("format", super::without_table))]
 pub struct Arguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input; without it the paper's swing
     pub problem: Option<String>,
@@ -51,7 +53,21 @@ pub struct Arguments {
     pub common: Common,
 }
 
-pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+impl Work for Arguments {
+    fn common(&self) -> Common {
+        self.common.clone()
+    }
+
+    fn input(&self) -> Option<&Path> {
+        self.problem.as_deref().and_then(super::problem::path)
+    }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        run(self)
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = asked(arguments)?;
     let tolerance = tolerance(&arguments.common);
     let setup = Setup::try_from(&problem).map_err(|error| Failure::refused(&error, None))?;

@@ -1,10 +1,11 @@
 //! `lindstedt lagrange [FILE]`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
+use lindstedt::audit::paper;
 use lindstedt::export::json;
-use lindstedt::mechanics::{MechanismQuestion, study};
+use lindstedt::mechanics::study;
 use lindstedt::problem::{Problem, Reader};
 use lindstedt::report;
 
@@ -12,11 +13,11 @@ use super::answer::{Answer, no_such};
 use super::derive::exact_values;
 use super::files::width;
 use super::problem::from_file;
-use super::{Common, Failure, Format, Outcome, json_text};
+use super::{Common, Failure, Format, Outcome, Work, json_text};
 
+/// Energies and forces to equations of motion, units checked, dimensionless groups, places of rest and modes
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-#[command(mut_arg("format", super::words_only))]
 pub struct Arguments {
     /// A TOML file with [lagrangian], or - for standard input; without it the paper's pendulum, its equations (1) to (8) beside what follows
     pub file: Option<PathBuf>,
@@ -27,7 +28,21 @@ pub struct Arguments {
     pub common: Common,
 }
 
-pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+impl Work for Arguments {
+    fn common(&self) -> Common {
+        self.common.clone()
+    }
+
+    fn input(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        run(self)
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let common = &arguments.common;
     if common.tolerance.is_some() {
         return Err(Failure::Usage(
@@ -40,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         ));
     }
     let (mut question, problem) = match &arguments.file {
-        None => (MechanismQuestion::of_paper(), Problem::default()),
+        None => (paper::mechanism(), Problem::default()),
         Some(path) => {
             let problem = from_file(path)?;
             problem
@@ -56,12 +71,25 @@ pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         .unwrap_or_default()
         .numbers();
     let study = study(question).map_err(|error| Failure::refused(&error, error.help()))?;
+    // The printed equations stand beside the derived ones where the mechanism is the paper's.
+    let findings = match &arguments.file {
+        None => paper::findings().map_err(|error| Failure::refused(&error, None))?,
+        Some(_) => Vec::new(),
+    };
+    let mut document = report::mechanism(&study);
+    if !findings.is_empty() {
+        document.sections.push(report::paper_equations(&findings));
+    }
     let answer = Answer {
-        document: &report::mechanism(&study),
+        document: &document,
         width: width(common.output.as_deref()),
         picture: None,
         other: &|format| match format {
-            Format::Json => json_text(&json::lagrangian(&study)),
+            Format::Json => {
+                let mut document = json::lagrangian(&study);
+                document.findings = json::lagrangian::findings(&findings);
+                json_text(&document)
+            }
             format => no_such(format),
         },
     };

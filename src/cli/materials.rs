@@ -1,6 +1,6 @@
 //! `lindstedt materials [FILE]`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use lindstedt::Interrupt;
@@ -12,8 +12,9 @@ use lindstedt::report;
 use super::answer::{Answer, no_such};
 use super::files::width;
 use super::problem::from_file;
-use super::{Common, Failure, Format, Outcome, STOP, json_text};
+use super::{Common, Failure, Format, Outcome, STOP, Work, json_text};
 
+/// The same swing against barriers of several materials: contact, rest time, and what is held fixed
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
 pub struct Arguments {
@@ -29,7 +30,21 @@ pub struct Arguments {
     pub common: Common,
 }
 
-pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+impl Work for Arguments {
+    fn common(&self) -> Common {
+        self.common.clone()
+    }
+
+    fn input(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        run(self)
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = match &arguments.file {
         None => Problem::default(),
         Some(path) => from_file(path)?,

@@ -29,6 +29,7 @@ mod trajectory;
 
 use std::fmt::Display;
 use std::io::{Read as _, Write as _};
+use std::panic::RefUnwindSafe;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -36,7 +37,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand};
+use clap::{ArgMatches, Args};
 use lindstedt::export::code::Language;
 use lindstedt::export::{is_invisible, printable};
 use lindstedt::problem::LARGEST_FILE;
@@ -44,61 +45,177 @@ use lindstedt::solution::{Advice, Setting};
 use lindstedt::verify::{DEFAULT_TOLERANCE, Verdict};
 use serde::Serialize;
 
-/// Closed-form approximations of nonlinear vibrations, derived exactly and judged against the true motion.
-#[derive(Parser)]
-#[command(name = "lindstedt", version, max_term_width = 100, after_help = AFTER_HELP)]
-struct Cli {
-    #[command(subcommand)]
-    command: Option<Command>,
-}
-
 const AFTER_HELP: &str = "\
 Without a command: lindstedt impact, the paper's pendulum and barrier.
 
 Exit codes: 0 done; 1 the problem was refused or failed; 2 wrong usage; 3 verdict failed (with --tolerance; audit and
 paper always); 4 stopped before the end: what is printed is partial and says so.";
 
-#[derive(Subcommand)]
-enum Command {
-    /// Derive the frequency law and the motion of an oscillator, to an order
-    Derive(derive::Arguments),
-    /// Every method of the field on one equation, in one table, judged against the true motion
-    Compare(compare::Arguments),
-    /// The three phases of a pendulum that hits an elastic barrier, in closed form, checked by Runge-Kutta
-    Impact(impact::Arguments),
-    /// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any equation or mechanism
-    Simulate(simulate::Arguments),
-    /// Steady states of a driven or self-excited oscillator: every branch with its stability, folds, period doublings, backbone
-    Response(response::Arguments),
-    /// The arctangent in place of Coulomb's sgn: the paper's Table 1, and what it does to a swing near rest
-    Friction(friction::Arguments),
-    /// Energies and forces to equations of motion, units checked, dimensionless groups, places of rest and modes
-    Lagrange(lagrange::Arguments),
-    /// The same swing against barriers of several materials: contact, rest time, and what is held fixed
-    Materials(materials::Arguments),
-    /// The design that rests soonest: the paper's genetic algorithm, what decides the optimum, fronts of several wishes
-    Optimize(optimize::Arguments),
-    /// Transition curves of a linear equation with periodic coefficients, such as Mathieu's: where rest is stable
-    Stability(stability::Arguments),
-    /// Claims of a publication from a file, each computed again, with a verdict
-    Audit(audit::Arguments),
-    /// Every number, equation, table and figure of the paper, computed again, with a verdict
-    Paper(audit::PaperArguments),
-    /// A proof beside a formula: the motion exists, and how far the formula is off, from both sides
-    Certify(certify::Arguments),
-    /// Check a certificate that `certify` wrote, in exact arithmetic
-    Check(certify::CheckArguments),
-    /// List the classical oscillators that `derive` knows by name
-    Catalog(catalog::Arguments),
-    /// Print the JSON Schema of a kind of document: every key with its meaning and unit
-    Schema(schema::Arguments),
+/// The commands, in the order of `--help`. A new one is a file with its arguments, documented by their line in
+/// `--help`, and their [`Work`], and a row here.
+static COMMANDS: [Command; 16] = [
+    Command::of::<derive::Arguments>("derive")
+        .writing(Formats::Programs)
+        .waiting(derive::patience),
+    Command::of::<compare::Arguments>("compare").writing(Formats::Pictures),
+    Command::of::<impact::Arguments>("impact").writing(Formats::Pictures),
+    Command::of::<simulate::Arguments>("simulate").waiting(a_minute),
+    Command::of::<response::Arguments>("response").waiting(a_minute),
+    Command::of::<friction::Arguments>("friction"),
+    Command::of::<lagrange::Arguments>("lagrange").writing(Formats::Words),
+    Command::of::<materials::Arguments>("materials").waiting(a_minute),
+    Command::of::<optimize::Arguments>("optimize").waiting(a_minute),
+    Command::of::<stability::Arguments>("stability"),
+    Command::of::<audit::Arguments>("audit")
+        .writing(Formats::Words)
+        .judged(),
+    Command::of::<audit::PaperArguments>("paper")
+        .writing(Formats::Words)
+        .judged(),
+    Command::of::<certify::Arguments>("certify")
+        .writing(Formats::Words)
+        .waiting(derive::patience),
+    Command::of::<certify::CheckArguments>("check")
+        .writing(Formats::Words)
+        .limited(certify::LONGEST_CHECK),
+    Command::of::<catalog::Arguments>("catalog").writing(Formats::Words),
+    Command::of::<schema::Arguments>("schema").writing(Formats::One),
+];
+
+/// The command that runs where none is named.
+const USUAL: &str = "impact";
+
+/// A row of [`COMMANDS`].
+struct Command {
+    /// The name on the command line.
+    name: &'static str,
+    /// The formats of its result.
+    formats: Formats,
+    /// The time to wait for a part of the result, once the time is up. Only a simulation, a search, branches and an expansion have parts
+    /// worth waiting for; to add up what a long one did takes a while.
+    patience: fn() -> Duration,
+    /// The time limit in seconds where none is given.
+    limit: Option<f64>,
+    /// Whether a verdict that fails is exit code 3 without `--tolerance`.
+    is_judged: bool,
+    /// Adds the arguments to the command line.
+    augment: fn(clap::Command) -> clap::Command,
+    /// Reads the arguments.
+    read: fn(&ArgMatches) -> Result<Box<dyn Work>, clap::Error>,
+}
+
+/// The arguments of a command, and the work that they ask for.
+trait Work: Send + RefUnwindSafe {
+    /// The options that every command takes.
+    fn common(&self) -> Common;
+
+    /// The file that is read, where one is.
+    fn input(&self) -> Option<&Path> {
+        None
+    }
+
+    /// Does the work.
+    fn run(&self) -> Result<Outcome, Failure>;
+}
+
+impl Command {
+    /// The command with these arguments. It writes pictures and tables and has no parts to wait for, unless its row says otherwise.
+    const fn of<A: Args + Work + 'static>(name: &'static str) -> Self {
+        Self {
+            name,
+            formats: Formats::PicturesAndTables,
+            patience: || Duration::ZERO,
+            limit: None,
+            is_judged: false,
+            augment: A::augment_args,
+            read: |matches| Ok(Box::new(A::from_arg_matches(matches)?)),
+        }
+    }
+
+    /// The command with these formats.
+    const fn writing(self, formats: Formats) -> Self {
+        Self { formats, ..self }
+    }
+
+    /// The command with a result that may be a part.
+    const fn waiting(self, patience: fn() -> Duration) -> Self {
+        Self { patience, ..self }
+    }
+
+    /// The command with a time limit in seconds where none is given.
+    const fn limited(self, seconds: f64) -> Self {
+        Self {
+            limit: Some(seconds),
+            ..self
+        }
+    }
+
+    /// The command with an exit code that tells its verdict.
+    const fn judged(self) -> Self {
+        Self {
+            is_judged: true,
+            ..self
+        }
+    }
+
+    /// The command as the parser of the command line knows it.
+    fn parser(&self) -> clap::Command {
+        let command = (self.augment)(clap::Command::new(self.name));
+        match self.formats {
+            Formats::One => command,
+            formats => command.mut_arg("format", |format| format.value_parser(format_parser(formats.listed()))),
+        }
+    }
+
+    /// Refuses a format that the command does not have, before any work is done for it.
+    fn takes(&self, format: Format) -> Result<(), Failure> {
+        let is_taken = matches!(self.formats, Formats::One)
+            || Format::OF_ALL.contains(&format)
+            || self.formats.listed().contains(&format);
+        if is_taken { Ok(()) } else { answer::no_such(format) }
+    }
+}
+
+/// A minute: the patience with work that is stopped and hands back a part.
+fn a_minute() -> Duration {
+    Duration::from_secs(60)
+}
+
+/// The formats of a command beside those of every command.
+#[derive(Clone, Copy)]
+enum Formats {
+    /// Pictures and programs.
+    Programs,
+    /// Pictures.
+    Pictures,
+    /// Pictures and tables of comma-separated values.
+    PicturesAndTables,
+    /// No other formats.
+    Words,
+    /// A single format, whatever the file is called: there is no `--format`.
+    One,
+}
+
+impl Formats {
+    /// The formats that the help lists beside those of every command.
+    fn listed(self) -> Vec<Format> {
+        match self {
+            Self::Programs => {
+                let programs = Language::ALL.map(Format::Code);
+                [Format::Svg].into_iter().chain(programs).collect()
+            }
+            Self::Pictures => vec![Format::Svg],
+            Self::PicturesAndTables => vec![Format::Svg, Format::Csv],
+            Self::Words | Self::One => vec![],
+        }
+    }
 }
 
 /// What every command takes.
 #[derive(Args, Clone, Default)]
 struct Common {
     /// What to print; without it what the name of --output ends in (.tex, .json, .html, .svg, .csv, .py), else text
-    #[arg(long, value_parser = formats([Format::Svg, Format::Csv]))]
+    #[arg(long, value_parser = format_parser([]))]
     format: Option<Format>,
     /// Write the result to this file instead of standard output; - for standard output
     #[arg(long, value_name = "FILE")]
@@ -175,29 +292,12 @@ impl Format {
 }
 
 /// Reads a format. Help lists those of every command and these; a command refuses all others with the reason.
-fn formats(listed: impl IntoIterator<Item = Format>) -> impl TypedValueParser<Value = Format> {
+fn format_parser(listed: impl IntoIterator<Item = Format>) -> impl TypedValueParser<Value = Format> {
     let listed: Vec<Format> = Format::OF_ALL.into_iter().chain(listed).collect();
     let values = Format::all().map(|format| PossibleValue::new(format.name()).hide(!listed.contains(&format)));
     let unknown = || "no format of this name".to_owned();
     PossibleValuesParser::new(values)
         .try_map(move |name| Format::all().find(|format| format.name() == name).ok_or_else(unknown))
-}
-
-/// The option of a command that has no table.
-fn without_table(format: clap::Arg) -> clap::Arg {
-    format.value_parser(formats([Format::Svg]))
-}
-
-/// The option of a command that has neither a table nor a picture.
-fn words_only(format: clap::Arg) -> clap::Arg {
-    format.value_parser(formats([]))
-}
-
-/// The option of a command that writes programs.
-fn with_programs(format: clap::Arg) -> clap::Arg {
-    format.value_parser(formats(
-        [Format::Svg].into_iter().chain(Language::ALL.map(Format::Code)),
-    ))
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -299,118 +399,31 @@ struct Outcome {
     partial: bool,
 }
 
-impl Command {
-    /// What every command takes.
-    fn common(&self) -> Common {
-        match self {
-            Self::Derive(arguments) => arguments.common.clone(),
-            Self::Compare(arguments) => arguments.common.clone(),
-            Self::Impact(arguments) => arguments.common.clone(),
-            Self::Simulate(arguments) => arguments.common.clone(),
-            Self::Response(arguments) => arguments.common.clone(),
-            Self::Friction(arguments) => arguments.common.clone(),
-            Self::Lagrange(arguments) => arguments.common.clone(),
-            Self::Materials(arguments) => arguments.common.clone(),
-            Self::Optimize(arguments) => arguments.common.clone(),
-            Self::Stability(arguments) => arguments.common.clone(),
-            Self::Audit(arguments) => arguments.common.clone(),
-            Self::Paper(arguments) => arguments.common.clone(),
-            Self::Certify(arguments) => arguments.common.clone(),
-            Self::Check(arguments) => arguments.common.clone(),
-            Self::Catalog(arguments) => arguments.common.clone(),
-            Self::Schema(arguments) => arguments.common(),
-        }
-    }
-
-    /// The file it reads, where it reads one.
-    fn input(&self) -> Option<&Path> {
-        match self {
-            Self::Derive(arguments) => problem::path(&arguments.question.problem),
-            Self::Certify(arguments) => problem::path(&arguments.question.problem),
-            Self::Check(arguments) => Some(&arguments.file),
-            Self::Compare(arguments) => problem::path(&arguments.problem),
-            Self::Impact(arguments) => arguments.problem.as_deref().and_then(problem::path),
-            Self::Simulate(arguments) => arguments.problem.as_deref().and_then(problem::path),
-            Self::Response(arguments) => problem::path(&arguments.problem),
-            Self::Lagrange(arguments) => arguments.file.as_deref(),
-            Self::Materials(arguments) => arguments.file.as_deref(),
-            Self::Optimize(arguments) => arguments.file.as_deref(),
-            Self::Stability(arguments) => problem::path(&arguments.problem),
-            Self::Audit(arguments) => Some(&arguments.file),
-            Self::Paper(_) | Self::Friction(_) | Self::Catalog(_) | Self::Schema(_) => None,
-        }
-    }
-
-    /// Refuses a format that it does not have, before any work is done for it.
-    fn takes(&self, format: Format) -> Result<(), Failure> {
-        let in_words = matches!(
-            self,
-            Self::Audit(_) | Self::Paper(_) | Self::Lagrange(_) | Self::Certify(_) | Self::Check(_) | Self::Catalog(_)
-        );
-        let refused = match (self, format) {
-            (Self::Schema(_), _) => false,
-            (Self::Derive(_) | Self::Compare(_) | Self::Impact(_), Format::Csv) => true,
-            (Self::Derive(_), _) => false,
-            (_, Format::Code(_)) => true,
-            (_, Format::Svg | Format::Csv) => in_words,
-            _ => false,
-        };
-        if refused { answer::no_such(format) } else { Ok(()) }
-    }
-
-    /// How long to wait for what there is, once the time is up. Only a simulation, a search, branches and an expansion have parts worth waiting
-    /// for; to add up what a long one did takes a while.
-    fn patience(&self) -> fn() -> Duration {
-        match self {
-            Self::Simulate(_) | Self::Response(_) | Self::Materials(_) | Self::Optimize(_) => {
-                || Duration::from_secs(60)
-            }
-            Self::Derive(_) | Self::Certify(_) => derive::patience,
-            _ => || Duration::ZERO,
-        }
-    }
-
-    /// The time limit in seconds, where there is one.
-    fn timeout(&self) -> Option<f64> {
-        let limit = match self {
-            Self::Check(_) => Some(certify::LONGEST_CHECK),
-            _ => None,
-        };
-        self.common().timeout.or(limit)
-    }
-
-    /// Whether a verdict that fails is exit code 3 without `--tolerance`.
-    fn is_judged(&self) -> bool {
-        matches!(self, Self::Audit(_) | Self::Paper(_))
-    }
-
-    /// Does the work.
-    fn run(&self) -> Result<Outcome, Failure> {
-        match self {
-            Self::Derive(arguments) => derive::run(arguments),
-            Self::Compare(arguments) => compare::run(arguments),
-            Self::Impact(arguments) => impact::run(arguments),
-            Self::Simulate(arguments) => simulate::run(arguments),
-            Self::Response(arguments) => response::run(arguments),
-            Self::Friction(arguments) => friction::run(arguments),
-            Self::Lagrange(arguments) => lagrange::run(arguments),
-            Self::Materials(arguments) => materials::run(arguments),
-            Self::Optimize(arguments) => optimize::run(arguments),
-            Self::Stability(arguments) => stability::run(arguments),
-            Self::Audit(arguments) => audit::run(arguments),
-            Self::Paper(arguments) => audit::run_paper(arguments),
-            Self::Certify(arguments) => certify::run(arguments),
-            Self::Check(arguments) => certify::check(arguments),
-            Self::Catalog(arguments) => catalog::run(arguments),
-            Self::Schema(arguments) => schema::run(arguments),
-        }
-    }
+/// The row of the command that is asked for, and its arguments; an error is a message of the parser, `--help` among them.
+fn asked() -> Result<(&'static Command, Box<dyn Work>), clap::Error> {
+    let matches = clap::Command::new("lindstedt")
+        .version(env!("CARGO_PKG_VERSION"))
+        .about("Closed-form approximations of nonlinear vibrations, derived exactly and judged against the true motion")
+        .max_term_width(100)
+        .after_help(AFTER_HELP)
+        .subcommands(COMMANDS.iter().map(Command::parser))
+        .try_get_matches()?;
+    let (name, arguments) = matches.subcommand().unzip();
+    let name = name.unwrap_or(USUAL);
+    let Some(command) = COMMANDS.iter().find(|command| command.name == name) else {
+        return Err(clap::Error::new(clap::error::ErrorKind::InvalidSubcommand));
+    };
+    let work = match arguments {
+        Some(arguments) => (command.read)(arguments)?,
+        None => (command.read)(&command.parser().try_get_matches_from([name])?)?,
+    };
+    Ok((command, work))
 }
 
 /// The program.
 pub fn run() -> ExitCode {
-    let cli = match Cli::try_parse() {
-        Ok(cli) => cli,
+    let (command, work) = match asked() {
+        Ok(asked) => asked,
         Err(error) => {
             // `--help` and `--version` are results and succeed; a closed pipe is no failure of theirs.
             let code = u8::try_from(error.exit_code()).unwrap_or(2);
@@ -418,23 +431,20 @@ pub fn run() -> ExitCode {
             return ExitCode::from(code);
         }
     };
-    let command = cli
-        .command
-        .unwrap_or_else(|| Command::Impact(impact::Arguments::default()));
-    let common = command.common();
-    let judged = common.tolerance.is_some() || command.is_judged();
+    let common = work.common();
+    let judged = common.tolerance.is_some() || command.is_judged;
     progress::QUIET.store(common.quiet, Ordering::Relaxed);
     match command
         .takes(common.format())
         .map_err(|failure| by_ending(failure, &common))
-        .and_then(|()| files::check(&common, command.input()))
+        .and_then(|()| files::check(&common, work.input()))
     {
         Err(Failure::Refused(message)) => return fail(1, &message),
         Err(Failure::Usage(message)) => return fail(2, &message),
         Ok(()) => {}
     }
-    let timeout = command.timeout();
-    let (outcome, in_vain) = within_limits(command, timeout);
+    let timeout = common.timeout.or(command.limit);
+    let (outcome, in_vain) = within_limits(work, timeout, command.patience);
     match (outcome, in_vain) {
         (Some(Some(Ok(outcome))), _) => finish(outcome, &common, judged),
         (Some(Some(Err(Failure::Refused(message)))), _) => fail(1, &message),
@@ -460,10 +470,13 @@ type Worked = Option<Result<Outcome, Failure>>;
 /// Exit code and message of work that ends without a result.
 type InVain = (u8, String);
 
-/// Does the work of a command until its end, an interrupt or the time limit: what came of it, where anything did, and what to say
+/// Does work until its end, an interrupt or the time limit: what came of it, where anything did, and what to say
 /// where nothing did because it was ended.
-fn within_limits(command: Command, timeout: Option<f64>) -> (Option<Worked>, Option<InVain>) {
-    let patience = command.patience();
+fn within_limits(
+    work: Box<dyn Work>,
+    timeout: Option<f64>,
+    patience: fn() -> Duration,
+) -> (Option<Worked>, Option<InVain>) {
     let (sender, receiver) = channel();
     let interrupted = sender.clone();
     // The first interrupt asks for what there is, the second ends the program.
@@ -483,7 +496,7 @@ fn within_limits(command: Command, timeout: Option<f64>) -> (Option<Worked>, Opt
     }
     let started = Instant::now();
     let worker = std::thread::spawn(move || {
-        let outcome = std::panic::catch_unwind(|| command.run());
+        let outcome = std::panic::catch_unwind(|| work.run());
         let _ = sender.send(Message::Done(outcome.ok()));
     });
     let first = match limit {

@@ -19,8 +19,9 @@ use super::answer::{Answer, no_such};
 use super::files::{is_standard, same, width};
 use super::problem::from_file;
 use super::progress;
-use super::{Common, Failure, Format, Outcome, STOP, count, json_text, read_at_most};
+use super::{Common, Failure, Format, Outcome, STOP, Work, count, json_text, read_at_most};
 
+/// The design that rests soonest: the paper's genetic algorithm, what decides the optimum, fronts of several wishes
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
 pub struct Arguments {
@@ -67,7 +68,21 @@ fn budget(text: &str) -> Result<Budget, String> {
     }
 }
 
-pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+impl Work for Arguments {
+    fn common(&self) -> Common {
+        self.common.clone()
+    }
+
+    fn input(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        run(self)
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = match &arguments.file {
         None => Problem::default(),
         Some(path) => from_file(path)?,

@@ -1,5 +1,7 @@
 //! `lindstedt response PROBLEM --vary Omega=0.5:1.5`.
 
+use std::path::Path;
+
 use clap::Args;
 use lindstedt::export::{self, json};
 use lindstedt::expr::parse_expression;
@@ -12,8 +14,9 @@ use super::answer::{Answer, no_such};
 use super::derive::{exact_values, formula, refused as refused_term};
 use super::problem::problem;
 use super::progress::{PROGRESS, with_progress};
-use super::{Common, Failure, Format, Outcome, STOP, files, json_text, tolerance};
+use super::{Common, Failure, Format, Outcome, STOP, Work, files, json_text, tolerance};
 
+/// Steady states of a driven or self-excited oscillator: every branch with its stability, folds, period doublings, backbone
 #[derive(Args)]
 pub struct Arguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
@@ -37,7 +40,21 @@ pub struct Arguments {
     pub common: Common,
 }
 
-pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+impl Work for Arguments {
+    fn common(&self) -> Common {
+        self.common.clone()
+    }
+
+    fn input(&self) -> Option<&Path> {
+        super::problem::path(&self.problem)
+    }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        run(self)
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Response)?;
     let oscillator = Oscillator::parse(formula.equation).map_err(|error| Failure::advised(&error, error.help()))?;

@@ -6,8 +6,9 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use lindstedt::export::json::Kind;
 
-use super::{Common, Failure, Outcome, whole};
+use super::{Common, Failure, Outcome, Work, whole};
 
+/// Print the JSON Schema of a kind of document: every key with its meaning and unit
 #[derive(Args)]
 pub struct Arguments {
     /// The kind of document, the middle of what stands under its `schema`
@@ -18,17 +19,21 @@ pub struct Arguments {
     output: Option<PathBuf>,
 }
 
-impl Arguments {
-    /// Where the schema goes; it has no other format and no verdict.
-    pub fn common(&self) -> Common {
+impl Work for Arguments {
+    /// The place of the schema, which has no other format and no verdict.
+    fn common(&self) -> Common {
         Common {
             output: self.output.clone(),
             ..Common::default()
         }
     }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        run(self)
+    }
 }
 
-pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome {
         result: whole(arguments.kind.json_schema().to_owned()),
         picture: None,

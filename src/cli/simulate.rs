@@ -1,5 +1,7 @@
 //! `lindstedt simulate [PROBLEM]`.
 
+use std::path::Path;
+
 use clap::{Args, ValueEnum};
 use lindstedt::export::simulation::{Report, SweepReport, csv, latex, sweep_csv, sweep_text, text};
 use lindstedt::export::{html, json};
@@ -16,8 +18,9 @@ use super::primary;
 use super::problem::problem;
 use super::progress::{self, MOTIONS};
 use super::trajectory::{self, Asked};
-use super::{Common, Failure, Format, Outcome, STOP, json_text, whole};
+use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, whole};
 
+/// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any equation or mechanism
 #[derive(Args)]
 pub struct Arguments {
     /// A TOML file, - for standard input, an equation in quotes or a name of the catalogue; without it the paper's pendulum and barrier
@@ -86,7 +89,21 @@ fn axis(text: &str) -> Result<Axis, String> {
 /// Without `--tolerance`: the energy that may go astray, relative to the largest.
 const ENERGY_TOLERANCE: f64 = 1e-6;
 
-pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+impl Work for Arguments {
+    fn common(&self) -> Common {
+        self.common.clone()
+    }
+
+    fn input(&self) -> Option<&Path> {
+        self.problem.as_deref().and_then(super::problem::path)
+    }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        run(self)
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = match &arguments.problem {
         None => Problem::default(),
         Some(text) => problem(text)?,

@@ -1,5 +1,7 @@
 //! `lindstedt stability PROBLEM`.
 
+use std::path::Path;
+
 use clap::Args;
 use lindstedt::export::{json, stability};
 use lindstedt::hill::{self, Chart, HillError, JudgedCurve, Options, TransitionCurves, TruthError};
@@ -12,8 +14,9 @@ use super::answer::{Answer, Draw, no_such};
 use super::derive::{exact_values, formula, oscillator};
 use super::files::width;
 use super::problem::problem;
-use super::{Common, Failure, Format, Outcome, json_text, tolerance};
+use super::{Common, Failure, Format, Outcome, Work, json_text, tolerance};
 
+/// Transition curves of a linear equation with periodic coefficients, such as Mathieu's: where rest is stable
 #[derive(Args)]
 pub struct Arguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
@@ -40,7 +43,21 @@ pub struct Arguments {
 /// Points of a curve of a chart.
 const STEPS: u32 = 60;
 
-pub fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+impl Work for Arguments {
+    fn common(&self) -> Common {
+        self.common.clone()
+    }
+
+    fn input(&self) -> Option<&Path> {
+        super::problem::path(&self.problem)
+    }
+
+    fn run(&self) -> Result<Outcome, Failure> {
+        run(self)
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Stability)?;
     let oscillator = oscillator(&formula, None)?;

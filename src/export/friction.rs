@@ -7,6 +7,7 @@ use std::fmt::Write as _;
 
 #[cfg(feature = "plot")]
 use super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, figure};
+use crate::audit::paper::Table;
 #[cfg(feature = "plot")]
 use crate::decimal::decimal;
 use crate::impact::friction::FrictionStudy;
@@ -28,14 +29,15 @@ pub fn csv(study: &FrictionStudy) -> String {
         "# units: speed rad*omega, sign 1, arctangent 1, error %, printed_value 1, printed_error %\n\
          speed,sign,arctangent,error,printed_value,printed_error\n",
     );
-    for row in &study.table.rows {
+    for row in Table::of(study).rows {
+        let laws = row.laws;
         let [value, error] = row
             .printed
             .map_or([""; 2], |entries| entries.map(|entry| entry.printed));
         let _ = writeln!(
             text,
             "{},{},{},{},{value},{error}",
-            row.speed, row.sign, row.arctangent, row.error
+            laws.speed, laws.sign, laws.arctangent, laws.error
         );
     }
     text

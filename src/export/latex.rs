@@ -177,9 +177,9 @@ pub fn audit(audit: &Audit) -> String {
 /// A mechanism, its equations of motion and its groups.
 ///
 /// ```
-/// use lindstedt::mechanics::{MechanismQuestion, study};
+/// use lindstedt::{audit::paper, mechanics::study};
 ///
-/// let study = study(MechanismQuestion::of_paper())?;
+/// let study = study(paper::mechanism())?;
 /// assert!(lindstedt::export::latex::mechanism(&study).contains(r"\gamma"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

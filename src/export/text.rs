@@ -150,9 +150,9 @@ pub fn audit(audit: &Audit, width: usize) -> String {
 /// A mechanism, its equations of motion and its groups, in lines of at most `width` characters where words allow it.
 ///
 /// ```
-/// use lindstedt::mechanics::{MechanismQuestion, study};
+/// use lindstedt::{audit::paper, mechanics::study};
 ///
-/// let study = study(MechanismQuestion::of_paper())?;
+/// let study = study(paper::mechanism())?;
 /// assert!(lindstedt::export::text::mechanism(&study, 120).contains("gamma"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -112,7 +112,7 @@ impl Problem {
         }
         let mut materials = match only_own {
             true => vec![],
-            false => Material::of_table_2(),
+            false => Material::defaults(),
         };
         self.own_materials(&mut materials)?;
         Ok(MaterialQuestion {

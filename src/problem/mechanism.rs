@@ -98,7 +98,6 @@ impl Problem {
             mechanism,
             units,
             values: BTreeMap::new(),
-            is_the_papers: false,
         })
     }
 

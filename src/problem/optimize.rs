@@ -12,7 +12,7 @@ use super::{
 };
 use crate::genetic::{Coding, Crossover, Mutation, Options, Penalty, StallTest};
 use crate::impact::{ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, Parameter, default_lambda};
-use crate::optimize::{Limit, Objective, OptimizeError, Question, TABLE_4, Variable};
+use crate::optimize::{DEFAULT_BOX, Limit, Objective, OptimizeError, Question, Variable};
 use crate::spelling::nearest;
 
 /// Why a problem file is no search.
@@ -206,7 +206,7 @@ impl Problem {
         }
         self.own_materials(&mut question.materials)?;
         question.variables.clear();
-        for (parameter, lower, upper) in TABLE_4 {
+        for (parameter, lower, upper) in DEFAULT_BOX {
             let given = match parameter {
                 Parameter::Mass => limits.mass,
                 Parameter::Radius => limits.radius,

@@ -1,9 +1,10 @@
 //! Equation (6) beside Coulomb's law: Table 1 of the paper, the pi of its digits, and a swing near rest.
 
 use super::{Block, Document, Heading};
+use crate::audit::paper::{Table, TableRow};
 use crate::decimal::{decimal, significant};
 use crate::impact::NoRest;
-use crate::impact::friction::{Creep, FrictionStudy, NearRest, SpeedRow, Table};
+use crate::impact::friction::{Creep, FrictionStudy, NearRest};
 
 /// The document of a study of friction.
 ///
@@ -18,14 +19,15 @@ use crate::impact::friction::{Creep, FrictionStudy, NearRest, SpeedRow, Table};
 pub fn friction(study: &FrictionStudy) -> Document<'_> {
     let alpha = study.setup.alpha;
     let near_rest = &study.near_rest;
+    let table = Table::of(study);
     Document {
         sections: vec![
             vec![
                 Block::QuestionAsTyped("x'' + alpha*sgn(x') + sin(x) = 0"),
                 Block::Note("the paper's equation (6): sgn(x') ~ (2/pi)*atan(100*x')".to_owned()),
             ],
-            speeds(&study.table),
-            readings(&study.table),
+            speeds(&table),
+            readings(&table),
             first_cycle(alpha, study.setup.amplitude, near_rest),
             stop(alpha, near_rest),
             creep(alpha, &near_rest.creep),
@@ -43,8 +45,8 @@ fn percent(share: f64) -> String {
     format!("{} %", significant(100.0 * share, 4))
 }
 
-fn speeds(table: &Table) -> Vec<Block<'_>> {
-    let row = |row: &SpeedRow| {
+fn speeds(table: &Table) -> Vec<Block<'static>> {
+    let row = |row: &TableRow| {
         let [value, error, treatment] = match row.printed {
             Some([value, error]) => [
                 value.printed.to_owned(),
@@ -57,10 +59,10 @@ fn speeds(table: &Table) -> Vec<Block<'_>> {
             None => Default::default(),
         };
         vec![
-            decimal(row.speed),
-            decimal(row.sign),
-            format!("{:.6}", row.arctangent),
-            format!("{:.6}", row.error),
+            decimal(row.laws.speed),
+            decimal(row.laws.sign),
+            format!("{:.6}", row.laws.arctangent),
+            format!("{:.6}", row.laws.error),
             value,
             error,
             treatment,
@@ -89,7 +91,7 @@ fn speeds(table: &Table) -> Vec<Block<'_>> {
     ]
 }
 
-fn readings(table: &Table) -> Vec<Block<'_>> {
+fn readings(table: &Table) -> Vec<Block<'static>> {
     let rows = table.readings.iter().map(|reading| {
         let counts = [reading.rounded, reading.cut, reading.either].map(|count| count.to_string());
         [&[reading.name.to_owned()], &counts[..]].concat()
@@ -127,18 +129,18 @@ fn readings(table: &Table) -> Vec<Block<'_>> {
             decimal(best.limit())
         )));
     }
-    let worst = |row: &&SpeedRow| row.printed.is_some() && row.speed != 0.0;
+    let worst = |row: &&TableRow| row.printed.is_some() && row.laws.speed != 0.0;
     if let Some(row) = table
         .rows
         .iter()
         .filter(worst)
-        .max_by(|a, b| a.speed.total_cmp(&b.speed))
+        .max_by(|a, b| a.laws.speed.total_cmp(&b.laws.speed))
         && let Some([_, error]) = row.printed
     {
         blocks.push(Block::Note(format!(
             "true errors fall as 2/(100*pi*x'): at {} it is {} %, printed as {} %",
-            decimal(row.speed),
-            decimal(row.error),
+            decimal(row.laws.speed),
+            decimal(row.laws.error),
             error.printed
         )));
     }

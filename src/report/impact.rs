@@ -2,12 +2,13 @@
 
 use super::solution::law_blocks;
 use super::{Block, Document};
+use crate::audit::paper;
 use crate::decimal::{decimal, significant};
 use crate::impact::contact::ContactLaw;
 use crate::impact::contact::power_law::duration_factor;
 use crate::impact::{
-    Attempt, Column, ContactLoss, DerivedContact, Flight, Form, Impact, Letters, Modulus, PRINTED_CONTACT_TIME,
-    Quantity, Reading, Setup, SiImpact, Side, YieldCheck,
+    Attempt, Column, ContactLoss, DerivedContact, Flight, Form, Impact, Letters, Modulus, Quantity, Reading, Setup,
+    SiImpact, Side, YieldCheck,
 };
 use crate::solution::law::Shown;
 use crate::solution::{AmplitudeConvention, Solution};
@@ -432,7 +433,7 @@ fn in_si_units<'a>(impact: &Impact, si: &SiImpact, tolerance: f64) -> Vec<Block<
     ))];
     blocks.extend(formulas(impact, si));
     let mut rows: Vec<(Quantity, &str)> = si.rows().into_iter().map(|(row, unit)| (row.clone(), unit)).collect();
-    let over_the_printed = si.over_the_printed();
+    let over_the_printed = paper::over_contact_time(si);
     rows.push((over_the_printed.clone(), ""));
     blocks.push(Block::SiQuantities {
         columns: impact.columns.iter().map(|column| column.reading).collect(),
@@ -549,7 +550,7 @@ fn printed(impact: &Impact, over_the_printed: &Quantity, tolerance: f64) -> Stri
         .collect();
     let reproduced: Vec<&str> = each
         .iter()
-        .filter(|(_, ratio)| SiImpact::is_reproduced(*ratio, tolerance))
+        .filter(|(_, ratio)| paper::is_reproduced(*ratio, tolerance))
         .map(|(name, _)| *name)
         .collect();
     let verdict = match reproduced.is_empty() {
@@ -558,7 +559,7 @@ fn printed(impact: &Impact, over_the_printed: &Quantity, tolerance: f64) -> Stri
     };
     format!(
         "the paper prints a contact time of {} s; over that: {}: {verdict}",
-        decimal(PRINTED_CONTACT_TIME),
+        decimal(paper::CONTACT_TIME),
         ratios.join(", ")
     )
 }

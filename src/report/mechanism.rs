@@ -3,21 +3,21 @@
 use std::borrow::Cow;
 
 use super::{Block, Document};
+use crate::audit::paper::Finding;
 use crate::decimal::decimal;
 use crate::derivation::Line;
 use crate::expr::{Expr, Function};
-use crate::mechanics::paper::Finding;
 use crate::mechanics::{Drive, Groups, MechanismStudy, Mode, NoGroups, NoModes, Place, RestStudy};
 use crate::symbol::Symbol;
 
 /// The document of a study of a mechanism.
 ///
 /// ```
-/// use lindstedt::mechanics::{MechanismQuestion, study};
+/// use lindstedt::{audit::paper, mechanics::study};
 ///
-/// let study = study(MechanismQuestion::of_paper())?;
+/// let study = study(paper::mechanism())?;
 /// let document = lindstedt::report::mechanism(&study);
-/// assert!(lindstedt::export::text::document(&document, 120).contains("with the square"));
+/// assert!(lindstedt::export::text::document(&document, 120).contains("stiffness of the contact"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn mechanism(study: &MechanismStudy) -> Document<'_> {
@@ -29,9 +29,6 @@ pub fn mechanism(study: &MechanismStudy) -> Document<'_> {
         Some(Err(error)) => vec![checked(), Block::Note(no_groups(error))],
         Some(Ok(groups)) => dimensionless(groups, study),
     });
-    if !study.findings.is_empty() {
-        sections.push(findings(study));
-    }
     Document { sections }
 }
 
@@ -275,7 +272,19 @@ fn dimensionless<'a>(groups: &'a Groups, study: &'a MechanismStudy) -> Vec<Block
     blocks
 }
 
-fn findings(study: &MechanismStudy) -> Vec<Block<'_>> {
+/// The section of the paper's equations, each beside what the mechanism of the paper makes of it.
+///
+/// ```
+/// use lindstedt::{audit::paper, mechanics::study};
+///
+/// let study = study(paper::mechanism())?;
+/// let mut document = lindstedt::report::mechanism(&study);
+/// let findings = paper::findings()?;
+/// document.sections.push(lindstedt::report::paper_equations(&findings));
+/// assert!(lindstedt::export::text::document(&document, 120).contains("with the square"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn paper_equations(findings: &[Finding]) -> Vec<Block<'_>> {
     let entry = |finding: &Finding| {
         let verdict = match finding.agrees {
             Some(true) => "follows",
@@ -284,15 +293,14 @@ fn findings(study: &MechanismStudy) -> Vec<Block<'_>> {
         };
         (finding.equation.to_owned(), format!("{verdict}: {}", finding.words))
     };
-    let printed = study
-        .findings
+    let printed = findings
         .iter()
         .map(|finding| Block::Detail(format!("{} {}", finding.equation, finding.printed)));
     let mut blocks = vec![Block::Heading("The paper's equations, in these letters".to_owned())];
     blocks.extend(printed);
     blocks.push(Block::Entries {
         heading: "What becomes of them",
-        entries: study.findings.iter().map(entry).collect(),
+        entries: findings.iter().map(entry).collect(),
     });
     blocks
 }

@@ -31,7 +31,7 @@ pub use impact::impact;
 pub use impact_certificate::{ImpactCertificateReport, impact_certificate};
 pub use impact_comparison::impact_comparison;
 pub use materials::{material_sentences, materials};
-pub use mechanism::mechanism;
+pub use mechanism::{mechanism, paper_equations};
 pub use optimization::{optimization, optimization_sentences};
 pub use primary::{PrimaryReport, PrimarySweepReport, primary, primary_sweep};
 #[cfg(feature = "json")]

@@ -403,7 +403,7 @@ fn best_design(study: &Study) -> Vec<Block<'_>> {
                     .to_owned(),
                 value_of(study, &best.design, index),
                 study
-                    .papers
+                    .default_design
                     .as_ref()
                     .map_or("-".to_owned(), |papers| value_of(study, papers, index)),
                 cell(limits.map(|variable| variable.lower)),
@@ -411,7 +411,7 @@ fn best_design(study: &Study) -> Vec<Block<'_>> {
             ]
         })
         .collect();
-    let papers = study.papers.as_ref().map(|papers| quantities(study, papers));
+    let papers = study.default_design.as_ref().map(|papers| quantities(study, papers));
     for (index, (name, value)) in quantities(study, &best.design).into_iter().enumerate() {
         let other = papers.as_ref().and_then(|papers| papers.get(index));
         rows.push(vec![
@@ -644,7 +644,7 @@ fn front(study: &Study) -> Vec<Block<'_>> {
                 .collect(),
         },
     ];
-    if let Some(papers) = &study.papers {
+    if let Some(papers) = &study.default_design {
         let values: Vec<String> = question
             .objectives
             .iter()

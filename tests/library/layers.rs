@@ -358,6 +358,25 @@ fn motions_in_numbers_stand_on_runge_kutta_alone() {
     }
 }
 
+/// Printed equations, tables and numbers of a publication are data of the audit: no crate has a name for one.
+#[test]
+fn the_engine_holds_no_publication() {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates");
+    let mut held = Vec::new();
+    for (file, _) in sources().into_iter().filter(|(file, _)| file.starts_with(&crates)) {
+        let text = std::fs::read_to_string(&file).expect("a source file");
+        let numbered =
+            |(place, name): (usize, &str)| text[place + name.len()..].starts_with(|digit: char| digit.is_ascii_digit());
+        let of_a_table = ["Table ", "TABLE_"]
+            .iter()
+            .any(|name| text.match_indices(name).any(numbered));
+        if of_a_table || text.contains("PRINTED_") {
+            held.push(file);
+        }
+    }
+    assert_eq!(held, Vec::<PathBuf>::new());
+}
+
 /// The crate of the integers of any length is named where numbers live: elsewhere they are `exact::Integer`.
 #[test]
 fn long_integers_come_from_one_place() {

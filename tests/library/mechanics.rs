@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use lindstedt::audit::paper;
 use lindstedt::expr::{CompiledFunction, Expr, parse_expression};
 use lindstedt::mechanics::{
-    Dimension, Drive, Groups, MechanicsError, Mechanism, MechanismQuestion, Modes, Place, equilibria, paper, study,
+    Dimension, Drive, Groups, MechanicsError, Mechanism, MechanismQuestion, Modes, Place, equilibria, study,
 };
 use lindstedt::problem::Problem;
 use lindstedt::system::Integrator;
@@ -372,7 +373,6 @@ fn a_rest_without_a_linear_force_is_not_called_free() {
             mechanism: Mechanism::parse(&[coordinate], kinetic, potential).unwrap(),
             units: None,
             values: values.iter().map(|(name, value)| (Symbol::new(name), *value)).collect(),
-            is_the_papers: false,
         };
         let study = study(question).unwrap();
         let text = lindstedt::export::text::document(&lindstedt::report::mechanism(&study), 120);

@@ -497,6 +497,20 @@ fn refused(equation: &str, amplitude: &str) -> String {
     }
 }
 
+/// Motions of an equation are periodic up to an end: at an amplitude inside the range is stated, at one outside the refusal names it.
+/// Out comes the refusal.
+fn is_periodic_until([equation, inside, outside, end]: [&str; 4]) -> String {
+    let found = judged(equation, Method::Exact, None, inside);
+    let text = range(&found, "periodic").map(|range| range.text.clone());
+    assert_eq!(text, Some(format!("periodic for {end}")), "{equation}");
+    let words = refused(equation, outside);
+    assert!(
+        words.ends_with(&format!("motions are periodic for {end}")),
+        "{equation}: {words}"
+    );
+    words
+}
+
 /// Released on the wall of a well that levels off on the other side, a motion has the energy to leave from where V is that at infinity.
 #[test]
 fn a_motion_must_turn_back_on_the_other_side_too() {
@@ -543,14 +557,7 @@ fn a_motion_must_turn_back_on_the_other_side_too() {
             "A < 0.804719: beyond it the motion escapes to x = -infinity",
         ),
     ] {
-        let found = judged(equation, Method::Exact, None, inside);
-        let text = range(&found, "periodic").map(|range| range.text.clone());
-        assert_eq!(text, Some(format!("periodic for {end}")), "{equation}");
-        let words = refused(equation, outside);
-        assert!(
-            words.ends_with(&format!("motions are periodic for {end}")),
-            "{equation}: {words}"
-        );
+        is_periodic_until([equation, inside, outside, end]);
     }
     // log(r) + 1/r grows without end, and so does sqrt(1 + x^2).
     let found = judged("x'' + 1/(1 + x) - 1/(1 + x)^2 = 0", Method::Exact, None, "-0.9");
@@ -600,14 +607,7 @@ fn inertia_that_depends_on_the_position_has_its_wells() {
             "-2 < A < 0.373508: the separatrix passes the unstable equilibrium x = -1",
         ),
     ] {
-        let found = judged(equation, Method::Exact, None, inside);
-        let text = range(&found, "periodic").map(|range| range.text.clone());
-        assert_eq!(text, Some(format!("periodic for {end}")), "{equation}");
-        let words = refused(equation, outside);
-        assert!(
-            words.ends_with(&format!("motions are periodic for {end}")),
-            "{equation}: {words}"
-        );
+        let words = is_periodic_until([equation, inside, outside, end]);
         assert!(
             !words.contains("no finite value") && words.len() < 250,
             "{equation}: {words}"

@@ -416,7 +416,7 @@ fn the_material_is_chosen_by_what_it_loses() {
             .flatten()
             .all(|value| *value >= values[chosen].expect("it rests"))
     );
-    assert!(found.papers.is_none());
+    assert!(found.default_design.is_none());
 }
 
 #[test]
@@ -581,7 +581,7 @@ fn the_page_prints_what_is_found() {
     let found = study(question.clone());
     let (best, papers) = (
         &found.best().expect("a design").design,
-        found.papers.as_ref().expect("Table 5"),
+        found.default_design.as_ref().expect("Table 5"),
     );
     let mut rows = Vec::new();
     for objective in [

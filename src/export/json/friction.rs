@@ -5,8 +5,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
+use crate::audit::paper::{Entry, Table};
 use crate::impact::STEEPNESS;
-use crate::impact::friction::{Entry, FrictionStudy};
+use crate::impact::friction::FrictionStudy;
 
 /// The paper's equation (6), (2/pi) atan(100 x') in place of Coulomb's sgn(x'), beside that law: Table 1 of the paper, and a swing
 /// near rest. Angles are in radians, time is in units of 1/omega of small swings, sqrt(L/g).
@@ -192,16 +193,16 @@ pub struct RestTime {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn friction(study: &FrictionStudy) -> FrictionDocument {
-    let (table, near_rest) = (&study.table, &study.near_rest);
+    let (table, near_rest) = (Table::of(study), &study.near_rest);
     let speeds = table.rows.iter().map(|row| {
         let [value, error] = row
             .printed
             .map_or([None, None], |entries| entries.map(|entry| Some(printed(entry))));
         Speed {
-            speed: row.speed,
-            sign: row.sign,
-            arctangent: row.arctangent,
-            error: row.error,
+            speed: row.laws.speed,
+            sign: row.laws.sign,
+            arctangent: row.laws.arctangent,
+            error: row.laws.error,
             printed_value: value,
             printed_error: error,
         }

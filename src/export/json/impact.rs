@@ -9,11 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use super::solution::{SolutionDocument, solution};
 use super::{JsonError, Kind, check_kind};
+use crate::audit::paper;
 use crate::impact::contact::{ContactErrors, ContactLaw, ContactMotion, ContactRow, SineSeries};
-use crate::impact::{
-    self, ContactLoss, DerivedContact, Form, Impact, Modulus, PRINTED_CONTACT_TIME, Reading, Rule, Setup, SiImpact,
-    Side,
-};
+use crate::impact::{self, ContactLoss, DerivedContact, Form, Impact, Modulus, Reading, Rule, Setup, SiImpact, Side};
 use crate::verify::Verdict;
 
 /// A swing released from rest that hits an elastic barrier: approach, contact and return in closed form, beside Runge-Kutta on the
@@ -562,13 +560,13 @@ fn si(impact: &Impact, si: &SiImpact, tolerance: f64) -> Si {
     let of = |found| quantity(impact, found);
     let over_printed = |ratio: f64| OverPrinted {
         ratio,
-        verdict: match SiImpact::is_reproduced(ratio, tolerance) {
+        verdict: match paper::is_reproduced(ratio, tolerance) {
             true => "reproduced",
             false => "not-reproduced",
         }
         .to_owned(),
     };
-    let over_the_printed = si.over_the_printed();
+    let over_the_printed = paper::over_contact_time(si);
     let over = of(&over_the_printed);
     Si {
         mass: units.mass,
@@ -598,7 +596,7 @@ fn si(impact: &Impact, si: &SiImpact, tolerance: f64) -> Si {
         peak_force: of(&si.peak_force),
         peak_pressure: si.peak_pressure.as_ref().map(of),
         printed_contact_time: PrintedContactTime {
-            value: PRINTED_CONTACT_TIME,
+            value: paper::CONTACT_TIME,
             runge_kutta: over_printed(over.runge_kutta),
             paper: over.paper.map(over_printed),
             energy: over.energy.map(over_printed),

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Kind;
 use super::number::Map;
+use crate::audit::paper::Finding;
 use crate::mechanics::{Group, MechanismStudy, Mode, Place, RestStudy};
 
 /// A mechanism, its equations of motion by Lagrange, its places of rest and the dimensionless groups on which its motion depends.
@@ -119,12 +120,12 @@ pub struct FindingDocument {
     pub words: String,
 }
 
-/// The document of kind `lagrangian`.
+/// The document of kind `lagrangian`; the paper's equations are put into it by [`findings`].
 ///
 /// ```
-/// use lindstedt::mechanics::{MechanismQuestion, study};
+/// use lindstedt::{audit::paper, mechanics::study};
 ///
-/// let study = study(MechanismQuestion::of_paper())?;
+/// let study = study(paper::mechanism())?;
 /// let document = lindstedt::export::json::lagrangian(&study);
 /// assert_eq!(document.groups.map(|groups| groups.len()), Some(7));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -197,7 +198,7 @@ pub fn lagrangian(study: &MechanismStudy) -> LagrangianDocument {
             .collect(),
         equilibria: study.rests.iter().map(equilibrium).collect(),
         modes: study.rests.iter().map(modes).collect(),
-        findings: study.findings.iter().map(finding).collect(),
+        findings: Vec::new(),
     }
 }
 
@@ -210,11 +211,21 @@ fn group(group: &Group) -> GroupDocument {
     }
 }
 
-fn finding(finding: &crate::mechanics::paper::Finding) -> FindingDocument {
-    FindingDocument {
+/// The paper's equations as the `findings` of a document.
+///
+/// ```
+/// use lindstedt::audit::paper;
+///
+/// let found = lindstedt::export::json::lagrangian::findings(&paper::findings()?);
+/// assert_eq!(found.len(), 8);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn findings(findings: &[Finding]) -> Vec<FindingDocument> {
+    let finding = |finding: &Finding| FindingDocument {
         equation: finding.equation.to_owned(),
         printed: finding.printed.clone(),
         agrees: finding.agrees,
         words: finding.words.clone(),
-    }
+    };
+    findings.iter().map(finding).collect()
 }

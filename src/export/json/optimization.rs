@@ -452,7 +452,7 @@ pub fn optimization(study: &Study) -> OptimizationDocument {
                 design: design(study, &finalist.design),
             })
             .collect(),
-        papers_design: study.papers.as_ref().map(|papers| design(study, papers)),
+        papers_design: study.default_design.as_ref().map(|papers| design(study, papers)),
         decision: study.decision.as_ref().map(decision),
         conclusions: optimization_sentences(study),
     }

@@ -148,7 +148,7 @@ impl Designs {
             [
                 near.take(1500).map(|point| at(point)).collect(),
                 best.map(|found| at(&found.point)).collect(),
-                study.papers.iter().map(|papers| at(&papers.point)).collect(),
+                study.default_design.iter().map(|papers| at(&papers.point)).collect(),
             ]
         };
         let label = |variable: &Variable| format!("{} ({})", variable.parameter.name(), variable.parameter.unit());
@@ -214,7 +214,7 @@ fn front(study: &Study) -> Result<String, FigureError> {
     let papers: Vec<Points> = others
         .iter()
         .map(|index| {
-            let papers = study.papers.as_ref();
+            let papers = study.default_design.as_ref();
             let pair =
                 papers.and_then(|papers| Some((objectives[0].value(papers)?, objectives[*index].value(papers)?)));
             pair.into_iter().collect()

@@ -5,7 +5,7 @@ use super::{closed_forms_off, with_unit};
 use crate::decimal::{decimal, significant};
 use crate::genetic::Stop;
 use crate::impact::Parameter;
-use crate::optimize::{Decision, Objective, Role, Sensitivity, Study, TABLE_4, WITHIN};
+use crate::optimize::{DEFAULT_BOX, Decision, Objective, Role, Sensitivity, Study, WITHIN};
 
 /// `mass, radius and modulus`
 fn listed(names: &[&str]) -> String {
@@ -245,7 +245,7 @@ fn the_unit(study: &Study) -> Option<String> {
 }
 
 fn the_papers(study: &Study) -> Option<String> {
-    let (papers, best) = (study.papers.as_ref()?, study.best()?);
+    let (papers, best) = (study.default_design.as_ref()?, study.best()?);
     let objective = study.objective();
     let Some(value) = objective.value(papers) else {
         return Some("The paper's Table 5 does not rest in the time allowed under these assumptions.".to_owned());
@@ -259,7 +259,7 @@ fn the_papers(study: &Study) -> Option<String> {
         .filter(|(variable, value)| !(variable.lower..=variable.upper).contains(value))
         .map(|(variable, _)| variable.parameter.name())
         .collect();
-    let other: Vec<&str> = TABLE_4
+    let other: Vec<&str> = DEFAULT_BOX
         .iter()
         .map(|(parameter, ..)| *parameter)
         .filter(|parameter| {

@@ -26,7 +26,6 @@ mod groups;
 mod lagrange;
 pub mod linear;
 mod modes;
-pub mod paper;
 mod rates;
 mod study;
 mod trigonometry;

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use thiserror::Error;
 
 use super::modes::Jacobians;
-use super::paper::{self, Finding, PaperError};
 use super::{
     Dimension, Drive, Equations, Groups, MechanicsError, Mechanism, Mode, Modes, NoGroups, NoModes, Rest, UnitError,
     equilibria,
@@ -21,8 +20,6 @@ pub struct MechanismQuestion {
     pub units: Option<BTreeMap<Symbol, Dimension>>,
     /// Numbers for parameters: with all of them the modes have numbers.
     pub values: BTreeMap<Symbol, f64>,
-    /// Whether it is the paper's, whose printed equations are then held against it.
-    pub is_the_papers: bool,
 }
 
 /// Everything that follows from the energies.
@@ -36,8 +33,6 @@ pub struct MechanismStudy {
     pub rests: Vec<RestStudy>,
     /// The dimensionless form; nothing without units.
     pub groups: Option<Result<Groups, NoGroups>>,
-    /// The paper's equations beside these.
-    pub findings: Vec<Finding>,
 }
 
 /// A place of rest.
@@ -63,9 +58,6 @@ pub enum StudyError {
     /// A term of a wrong unit.
     #[error(transparent)]
     Unit(#[from] UnitError),
-    /// The paper's equations.
-    #[error(transparent)]
-    Paper(#[from] PaperError),
     /// A value for a name that does not occur.
     #[error("there is a value for `{0}`, which is no parameter of the mechanism")]
     UnknownValue(Symbol),
@@ -81,18 +73,6 @@ impl StudyError {
     }
 }
 
-impl MechanismQuestion {
-    /// The paper's pendulum and barrier.
-    pub fn of_paper() -> Self {
-        Self {
-            mechanism: paper::pendulum(),
-            units: Some(paper::units()),
-            values: BTreeMap::new(),
-            is_the_papers: true,
-        }
-    }
-}
-
 /// Derives, checks and linearises.
 ///
 /// # Errors
@@ -100,12 +80,20 @@ impl MechanismQuestion {
 ///
 /// ```
 /// # use lindstedt_dynamics as lindstedt;
-/// use lindstedt::mechanics::{MechanismQuestion, study};
+/// use lindstedt::mechanics::{Mechanism, MechanismQuestion, study};
 ///
-/// let study = study(MechanismQuestion::of_paper())?;
+/// let units = [("x", "1"), ("m", "kg"), ("L", "m"), ("g", "m/s^2"), ("c", "kg m^2/s")];
+/// let mut mechanism = Mechanism::parse(&["x"], "m*L^2*x'^2/2", "m*g*L*(1 - cos(x))")?;
+/// mechanism.dissipation = "c*x'^2/2".parse()?;
+/// let units = units.map(|(name, unit)| Ok((name.into(), unit.parse()?)));
+/// let study = study(MechanismQuestion {
+///     mechanism,
+///     units: Some(units.into_iter().collect::<Result<_, lindstedt::mechanics::UnitError>>()?),
+///     values: Default::default(),
+/// })?;
 /// let groups = study.groups.ok_or("no units")??;
 /// let names: Vec<&str> = groups.groups.iter().map(|group| group.name.name()).collect();
-/// assert_eq!(names, ["xc", "eta", "zeta", "alpha", "mu", "beta", "gamma"]);
+/// assert_eq!(names, ["zeta"]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn study(question: MechanismQuestion) -> Result<MechanismStudy, StudyError> {
@@ -144,15 +132,10 @@ pub fn study(question: MechanismQuestion) -> Result<MechanismStudy, StudyError> 
         .units
         .as_ref()
         .map(|units| Groups::of(mechanism, &equations, units));
-    let findings = match question.is_the_papers {
-        true => paper::findings()?,
-        false => Vec::new(),
-    };
     Ok(MechanismStudy {
         equations,
         rests,
         groups,
-        findings,
         question,
     })
 }

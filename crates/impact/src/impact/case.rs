@@ -22,7 +22,7 @@ use super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelErr
 use super::parameter::Parameter;
 use super::units::Units;
 
-/// A pendulum, its barrier, and what damps and drives it; the default is the paper's, without losses.
+/// A pendulum, its barrier, and what damps and drives it; the default has no losses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Case {
     /// A, rad, positive: released from rest at x = -A, or at x = A towards a barrier on the left.

@@ -25,20 +25,20 @@ use super::simulate::{SimulationError, simulate};
 use super::simulation::{CLOCK, Contact, Integrator, NoRest, Settings, Simulation, Stop};
 use super::units::{FIRST_YIELD, Modulus, Units};
 
-/// The elastic moduli of the paper's Table 2, Pa: inputs of its study, as printed.
-pub const TABLE_2: [(&str, f64); 3] = [
+/// The materials of a study that is given none, with their elastic moduli, Pa.
+pub const DEFAULT_MATERIALS: [(&str, f64); 3] = [
     ("Steel alloy (ASTM-A242)", 200e9),
     ("Aluminum alloy (6061-T6)", 70e9),
     ("Polyester elastomer", 0.2e9),
 ];
 
-/// The damping ratio zeta of a study that is given none: the paper prints none.
+/// The damping ratio zeta of a study that is given none.
 pub const DEFAULT_ZETA: f64 = 0.02;
 
-/// lambda, s/m, of a study that is given no contact damping: mu/gamma = 0.1 for the paper's design, sqrt(g L) = 0.817 m/s.
+/// lambda, s/m, of a study that is given no contact damping: mu/gamma = 0.1 for the default design, sqrt(g L) = 0.817 m/s.
 pub fn default_lambda() -> f64 {
-    let papers = hertz::Design::default();
-    0.1 / (papers.gravity * papers.length).sqrt()
+    let design = hertz::Design::default();
+    0.1 / (design.gravity * design.length).sqrt()
 }
 
 /// How long the motions of a study are followed where no duration is given, in units of 1/omega.
@@ -60,16 +60,16 @@ pub struct Material {
 }
 
 impl Material {
-    /// The materials of the paper's Table 2: each modulus alone, as in its equation (3).
+    /// The [`DEFAULT_MATERIALS`], each by its modulus alone: the sphere counts as rigid and the barrier as a body without Poisson's ratio.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::Material;
     ///
-    /// let names: Vec<String> = Material::of_table_2().into_iter().map(|material| material.name).collect();
+    /// let names: Vec<String> = Material::defaults().into_iter().map(|material| material.name).collect();
     /// assert_eq!(names[2], "Polyester elastomer");
     /// ```
-    pub fn of_table_2() -> Vec<Self> {
+    pub fn defaults() -> Vec<Self> {
         let row = |(name, modulus): (&str, f64)| Self {
             name: name.to_owned(),
             modulus: Modulus::BarrierAlone(modulus),
@@ -77,7 +77,7 @@ impl Material {
             damping: None,
             at_speed: None,
         };
-        TABLE_2.into_iter().map(row).collect()
+        DEFAULT_MATERIALS.into_iter().map(row).collect()
     }
 }
 
@@ -94,12 +94,12 @@ pub struct MaterialQuestion {
     pub settings: Settings,
     /// By which method they are followed; the picture shows them by the same.
     pub integrator: Integrator,
-    /// The dampings that nobody gave: the paper prints none.
+    /// The dampings that nobody gave, which are then the defaults.
     pub defaults: Vec<Parameter>,
 }
 
 impl Default for MaterialQuestion {
-    /// The paper's design and Table 2, with the dissipation that the paper does not print.
+    /// The default design and materials, with the default dissipation.
     fn default() -> Self {
         Self {
             case: Case {
@@ -107,7 +107,7 @@ impl Default for MaterialQuestion {
                 zeta: DEFAULT_ZETA,
                 ..Case::default()
             },
-            materials: Material::of_table_2(),
+            materials: Material::defaults(),
             sphere_yield: None,
             settings: Settings {
                 duration: DEFAULT_DURATION,

@@ -101,8 +101,8 @@ pub use form::{Form, Term};
 pub use judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation, true_impact};
 pub use linearisation::{Line, LinearisationError, Rule, UnknownRule, fit};
 pub use materials::{
-    Course, DEFAULT_DURATION, DEFAULT_ZETA, FirstContact, HeldFixed, Material, MaterialQuestion, MaterialRow,
-    MaterialStudy, MaterialsError, TABLE_2, course, default_lambda, study_materials,
+    Course, DEFAULT_DURATION, DEFAULT_MATERIALS, DEFAULT_ZETA, FirstContact, HeldFixed, Material, MaterialQuestion,
+    MaterialRow, MaterialStudy, MaterialsError, course, default_lambda, study_materials,
 };
 pub use model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, STEEPNESS, Side, Start};
 pub use parameter::{Parameter, UnknownParameter};
@@ -115,4 +115,4 @@ pub use simulation::{
     REST_FRACTION, Regime, Rest, Settings, Simulation, Stop, Turn,
 };
 pub use trial::{Attempt, ImpactError};
-pub use units::{Elastic, FIRST_YIELD, Modulus, PRINTED_CONTACT_TIME, Units};
+pub use units::{Elastic, FIRST_YIELD, Modulus, Units};

@@ -91,7 +91,7 @@ pub struct Model {
 }
 
 impl Default for Model {
-    /// The paper's barrier, [`DEFAULT_BARRIER`], with the stiffness of its design, [`hertz::DEFAULT_STIFFNESS`], and nothing
+    /// The default barrier, [`DEFAULT_BARRIER`], with the stiffness of its design, [`hertz::DEFAULT_STIFFNESS`], and nothing
     /// that damps or drives.
     fn default() -> Self {
         Self {
@@ -108,10 +108,10 @@ impl Default for Model {
     }
 }
 
-/// The amplitude of the paper's swing, rad: it is released from rest at x = -1.5.
+/// The amplitude of the default swing, rad: it is released from rest at x = -1.5.
 pub const DEFAULT_AMPLITUDE: f64 = 1.5;
 
-/// Where the paper's barrier stands, rad.
+/// The place of the default barrier, rad.
 pub const DEFAULT_BARRIER: f64 = 0.323;
 
 /// Where and how fast a motion begins, at t = 0.
@@ -124,7 +124,7 @@ pub struct Start {
 }
 
 impl Default for Start {
-    /// The paper's release, from rest at minus [`DEFAULT_AMPLITUDE`].
+    /// The default release, from rest at minus [`DEFAULT_AMPLITUDE`].
     fn default() -> Self {
         Self {
             x: -DEFAULT_AMPLITUDE,

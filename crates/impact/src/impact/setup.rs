@@ -91,7 +91,7 @@ pub enum ContactLoss {
     Restitution(f64),
 }
 
-/// The paper's pendulum: released at -1.5 rad, the barrier at 0.323, the stiffness of its design by equation (8).
+/// The default pendulum: released at -1.5 rad, the barrier at 0.323, the stiffness of its design by equation (8).
 impl Default for Setup {
     fn default() -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! The numbers of an impact in SI units, and what they say: whether a body yields, and how far the paper's contact time is.
+//! The numbers of an impact in SI units, and what they say: whether a body yields.
 //!
 //! In: an [`Impact`] whose [`Setup`](super::Setup) has [`Units`]. Out: an [`SiImpact`], every number by Runge-Kutta and by each
 //! closed form. The peak force is that of Hertz at the greatest depth, also where a line stood for it; of a damped contact the greatest
@@ -7,7 +7,7 @@
 use super::closed_form::{Impact, Quantity};
 use super::contact::hunt_crossley;
 use super::hertz;
-use super::units::{FIRST_YIELD, PRINTED_CONTACT_TIME, Units};
+use super::units::{FIRST_YIELD, Units};
 
 /// The numbers of an impact in SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -133,18 +133,6 @@ impl SiImpact {
         ];
         let pressure = self.peak_pressure.iter().map(|pressure| (pressure, "Pa"));
         rows.into_iter().chain(pressure).collect()
-    }
-
-    /// The contact time over the one that the paper prints: one, if that were reproduced.
-    pub fn over_the_printed(&self) -> Quantity {
-        converted("duration / printed", &self.duration, |duration| {
-            duration / PRINTED_CONTACT_TIME
-        })
-    }
-
-    /// Whether a contact time with this ratio to the printed one is that one, within the tolerance.
-    pub fn is_reproduced(ratio: f64, tolerance: f64) -> bool {
-        (ratio - 1.0).abs() <= tolerance
     }
 
     /// The stated yield limits beside the pressure of the true motion.

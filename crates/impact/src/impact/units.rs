@@ -18,9 +18,6 @@
 
 use std::f64::consts::PI;
 
-/// The contact time that the paper prints after its equation (15), in s: compared with, never computed from.
-pub const PRINTED_CONTACT_TIME: f64 = 9.258e-8;
-
 /// The pressure in the middle of a contact at which bodies with nu = 0.3 begin to yield, over their yield limit.
 pub const FIRST_YIELD: f64 = 1.6;
 

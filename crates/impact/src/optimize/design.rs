@@ -152,10 +152,10 @@ impl Question {
         })
     }
 
-    /// The paper's Table 5 as a point of this box, in it or not; nothing where materials are tried.
-    pub fn papers_point(&self) -> Option<Vec<f64>> {
-        let papers = Case::default();
-        let value = |parameter: Parameter| papers.get(parameter);
+    /// The default design as a point of this box, in it or not; nothing where materials are tried.
+    pub fn default_point(&self) -> Option<Vec<f64>> {
+        let usual = Case::default();
+        let value = |parameter: Parameter| usual.get(parameter);
         match self.materials.is_empty() {
             true => self
                 .variables

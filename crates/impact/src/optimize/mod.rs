@@ -1,8 +1,8 @@
-//! The best damper: the paper's search for the design that rests soonest, and what decides it.
+//! The best damper: a genetic search for the design that rests soonest, and what decides it.
 //!
 //! In: a [`Question`]: what may vary between which limits, what is held fixed, what is to be small, how it is searched. Out: a [`Study`]: the
 //! best design judged again by integration, how far many runs agree, what the same number of evaluations finds otherwise, the
-//! paper's own design under the same assumptions, and why the best one is best: a [`Decision`]. With several objectives at once it is the
+//! default design under the same assumptions, and why the best one is best: a [`Decision`]. With several objectives at once it is the
 //! Pareto front.
 //!
 //! - `objective`: what may be small or limited, one row each.
@@ -33,7 +33,7 @@ mod study;
 pub use decision::{Decision, Ends, Role, Sensitivity, WITHIN};
 pub use design::{Design, HardestContact, Route};
 pub use objective::Objective;
-pub use question::{Limit, OptimizeError, Question, TABLE_4, Variable};
+pub use question::{DEFAULT_BOX, Limit, OptimizeError, Question, Variable};
 #[cfg(feature = "parallel")]
 pub use study::optimize_on;
 pub use study::{Finalist, Found, Rival, SearchRun, Spread, Study, Watch, optimize};

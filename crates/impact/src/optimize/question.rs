@@ -13,8 +13,8 @@ use crate::impact::{
     Case, ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, FIRST_YIELD, Material, Parameter, Settings, default_lambda,
 };
 
-/// The limits of the paper's Table 4, in SI units: inputs of its study, as printed.
-pub const TABLE_4: [(Parameter, f64, f64); 4] = [
+/// The box of a search that is given none: each parameter with its lower and upper limit, in SI units.
+pub const DEFAULT_BOX: [(Parameter, f64, f64); 4] = [
     (Parameter::Mass, 0.010, 0.100),
     (Parameter::Radius, 0.001, 0.020),
     (Parameter::Length, 0.030, 0.300),
@@ -72,12 +72,12 @@ pub struct Question {
     pub runs: usize,
     /// The seed of all random numbers.
     pub seed: u64,
-    /// The dampings that nobody gave: the paper prints none.
+    /// The dampings that nobody gave, which are then the defaults.
     pub defaults: Vec<Parameter>,
 }
 
 impl Default for Question {
-    /// The paper's study: Table 4 searched a hundred times for the least rest time in seconds, with the dissipation that it does not print.
+    /// The [`DEFAULT_BOX`], searched a hundred times for the least rest time in seconds, with the default dissipation.
     fn default() -> Self {
         let variable = |(parameter, lower, upper)| Variable {
             parameter,
@@ -90,7 +90,7 @@ impl Default for Question {
                 zeta: DEFAULT_ZETA,
                 ..Case::default()
             },
-            variables: TABLE_4.map(variable).into(),
+            variables: DEFAULT_BOX.map(variable).into(),
             materials: vec![],
             objectives: vec![Objective::RestTime],
             limits: vec![],
@@ -192,7 +192,7 @@ impl Question {
             }
             error => OptimizeError::Limits(format!(
                 "{error}: give limits to one of {}",
-                TABLE_4.map(|(parameter, ..)| parameter.name()).join(", ")
+                DEFAULT_BOX.map(|(parameter, ..)| parameter.name()).join(", ")
             )),
         })
     }

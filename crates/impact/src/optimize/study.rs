@@ -149,8 +149,8 @@ pub struct Study {
     pub complete: bool,
     /// The best designs of the runs judged again, the best first; with several objectives the front.
     pub finalists: Vec<Finalist>,
-    /// The paper's Table 5 under the same assumptions, by integration, in the box or not.
-    pub papers: Option<Design>,
+    /// The default design under the same assumptions, by integration, in the box or not.
+    pub default_design: Option<Design>,
     /// What decides the best design; with several objectives nothing.
     pub decision: Option<Decision>,
     /// Other searches with the same number of evaluations; none with several objectives.
@@ -298,19 +298,19 @@ pub fn optimize(question: Question, known: Vec<SearchRun>, watch: &Watch) -> Res
             rivals = self::rivals(&question, &space, &runs, watch);
         }
     }
-    // All of Table 5, also what is held fixed here.
-    let papers = question.papers_point().and_then(|point| {
-        let mut papers = question.clone();
-        papers.case.design = hertz::Design {
+    // All of the default design, also what is held fixed here.
+    let default_design = question.default_point().and_then(|point| {
+        let mut usual = question.clone();
+        usual.case.design = hertz::Design {
             gravity: question.case.design.gravity,
             ..hertz::Design::default()
         };
-        papers.follow(&point, Route::Integration, true).ok()
+        usual.follow(&point, Route::Integration, true).ok()
     });
     Ok(Study {
         complete: complete && !(watch.stop)(),
         finalists,
-        papers,
+        default_design,
         decision,
         rivals: if (watch.stop)() { vec![] } else { rivals },
         runs,

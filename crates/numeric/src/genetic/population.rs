@@ -12,7 +12,7 @@ use super::selection::stochastic_uniform;
 use super::space::{Evaluation, Space};
 use super::stopping::{StallTest, Stop, has_stalled};
 
-/// How a population lives; the default is the paper's Table 3 with its contradictions resolved: real numbers in place of bits, and a
+/// How a population lives; the default has real numbers in place of bits, and a
 /// penalty that is one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {

@@ -132,7 +132,7 @@ pub struct Touch<'a> {
     pub exponent: Option<f64>,
 }
 
-/// The paper's pendulum at its barrier, at the speed that the energy of its swing gives it.
+/// The default pendulum at its barrier, at the speed that the energy of its swing gives it.
 impl Default for Touch<'_> {
     fn default() -> Self {
         use super::super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER};

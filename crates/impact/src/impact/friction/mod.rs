@@ -1,43 +1,43 @@
-//! What an arctangent in place of Coulomb's sgn does to a pendulum: the paper's equation (6), its Table 1, and the swing near rest.
+//! The effect of an arctangent in place of Coulomb's sgn on a pendulum: the laws at single speeds, and the swing near rest.
 //!
 //! In: a [`FrictionSetup`]: how strong the friction is, and where the swing is released. Out: a [`FrictionStudy`]:
 //!
-//! - `table`: equation (6) beside sgn at the paper's speeds, and which value of pi makes the printed digits.
+//! - `laws`: the arctangent beside sgn, speed by speed.
 //! - `near_rest`: where Coulomb's law stops the swing, and how the arctangent creeps on.
 //!
 //! ```text
 //! x'' + alpha sgn(x') + sin x = 0              it stops for good where it turns back with |sin x| <= alpha
-//! x'' + alpha (2/pi) atan(100 x') + sin x = 0  equation (6): it never stops
+//! x'' + alpha (2/pi) atan(100 x') + sin x = 0  it never stops
 //! ```
 
+mod laws;
 mod near_rest;
-mod table;
 
 use thiserror::Error;
 
+pub use laws::{SpeedRow, arctangent, arctangent_error};
 pub use near_rest::{Creep, CreepSample, FirstCycle, NearRest, RestTimes, slow_rate, work_share};
-pub use table::{Entry, PiReading, Printed, SpeedRow, TABLE, Table, arctangent};
 
 use super::model::DEFAULT_AMPLITUDE;
 use super::simulate::SimulationError;
 use crate::decimal::decimal;
 
-/// What is asked of the friction.
+/// The question: a friction and a swing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrictionSetup {
     /// The friction alpha, between 0 and 1: dimensionless, the torque in units of m g L.
     pub alpha: f64,
     /// The release, from rest at x = -A, rad: positive and below pi.
     pub amplitude: f64,
-    /// Speeds beside those of the paper's table, units of omega.
+    /// Speeds at which the two laws are compared, units of omega.
     pub speeds: Vec<f64>,
 }
 
-/// Friction of this strength stops the paper's swing after fifteen half swings.
+/// The default friction: it stops the default swing after fifteen half swings.
 pub const DEFAULT_ALPHA: f64 = 0.05;
 
 impl Default for FrictionSetup {
-    /// The paper's swing, at [`DEFAULT_ALPHA`], for the paper prints no alpha.
+    /// The default swing, at [`DEFAULT_ALPHA`].
     fn default() -> Self {
         Self {
             alpha: DEFAULT_ALPHA,
@@ -80,18 +80,18 @@ pub enum FrictionError {
     Simulation(#[from] SimulationError),
 }
 
-/// Equation (6) beside Coulomb's law.
+/// The arctangent beside Coulomb's law.
 #[derive(Debug, Clone)]
 pub struct FrictionStudy {
-    /// What was asked.
+    /// The question.
     pub setup: FrictionSetup,
-    /// The two laws at some speeds, with what the paper prints.
-    pub table: Table,
+    /// The two laws at the speeds of the setup.
+    pub rows: Vec<SpeedRow>,
     /// The swing by both laws, to rest.
     pub near_rest: NearRest,
 }
 
-/// Equation (6) beside Coulomb's law, at the paper's speeds and in a swing.
+/// The arctangent beside Coulomb's law, at single speeds and in a swing.
 ///
 /// # Errors
 /// [`FrictionError`] names the number that makes no swing.
@@ -101,7 +101,6 @@ pub struct FrictionStudy {
 /// use lindstedt::impact::friction::{FrictionSetup, study};
 ///
 /// let study = study(FrictionSetup::default())?;
-/// assert_eq!((study.table.best().name, study.table.best().either), ("3.14", study.table.entries()));
 /// let stop = study.near_rest.stop;
 /// assert!(stop.x.sin().abs() <= 0.05);
 /// assert!(study.near_rest.creep.rate.is_some_and(|rate| rate > 0.3)); // per unit of time
@@ -126,7 +125,7 @@ pub fn study(setup: FrictionSetup) -> Result<FrictionStudy, FrictionError> {
         return Err(FrictionError::Speed(*speed));
     }
     Ok(FrictionStudy {
-        table: Table::of(speeds),
+        rows: speeds.iter().copied().map(SpeedRow::at).collect(),
         near_rest: near_rest::near_rest(alpha, amplitude)?,
         setup,
     })

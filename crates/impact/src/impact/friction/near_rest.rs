@@ -74,7 +74,7 @@ impl Creep {
     }
 }
 
-/// Rest times on the paper's damper, pendulum and barrier, with friction alone.
+/// Rest times of the default pendulum at its barrier, with friction alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RestTimes {
     /// By Coulomb's law.
@@ -103,7 +103,7 @@ pub struct NearRest {
     pub first_cycle: FirstCycle,
     /// What it does at rest.
     pub creep: Creep,
-    /// Rest times on the paper's damper.
+    /// Rest times of the default pendulum at its barrier.
     pub rest_times: RestTimes,
     /// The motions from the release, by Coulomb's law and by the arctangent, until well after the stop.
     pub motions: [Simulation; 2],
@@ -328,7 +328,7 @@ fn place(alpha: f64, log: f64) -> f64 {
     (FRAC_2_PI * alpha * log.exp().min(1.0).asin()).asin()
 }
 
-/// On the paper's damper; as long as it takes four times to stop the swing without a barrier, and, by the arctangent, until it has
+/// On the default damper; as long as it takes four times to stop the swing without a barrier, and, by the arctangent, until it has
 /// crept from there to nothing, `creep` later.
 fn rest_times(alpha: f64, amplitude: f64, stop: f64, creep: f64) -> Result<RestTimes, FrictionError> {
     let rest = |friction, creep: f64| {

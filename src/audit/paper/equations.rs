@@ -1,30 +1,30 @@
-//! The paper's pendulum and its barrier, and what becomes of the paper's equations (1) to (8) when they are derived.
+//! The paper's equations (1) to (8), each held against the equation that follows from the energies of its pendulum and barrier.
 //!
-//! Nothing of a printed equation is used: each is only compared with what follows from the energies, term by term and unit by unit.
+//! A printed equation is never computed with: it is compared with the derived one term by term and unit by unit.
 
 use std::collections::BTreeMap;
 
-use super::dimension::{Dimension, UnitError, check, dimension};
-use super::{Equations, Groups, MechanicsError, Mechanism, NoGroups};
 use crate::expr::{Expr, ExprError, Function, Node};
+use crate::mechanics::dimension::{Dimension, UnitError, check, dimension};
+use crate::mechanics::{Equations, Groups, MechanicsError, Mechanism, MechanismQuestion, NoGroups};
 use crate::symbol::Symbol;
 
 /// A printed equation beside what is derived.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// Its number in the paper: `(1)`.
+    /// The number of the equation in the paper: `(1)`.
     pub equation: &'static str,
-    /// What is printed, in the letters of the mechanism.
+    /// The printed equation, in the letters of the mechanism.
     pub printed: String,
     /// Whether it follows as it is printed; nothing where it is put in and not derived.
     pub agrees: Option<bool>,
-    /// What was found.
+    /// The result of the comparison in words.
     pub words: String,
 }
 
-/// The energies that are printed, T of equation (1) as it stands, without the square on its last term.
+/// T of equation (1) as it is printed, without the square on its last term.
 const PRINTED_KINETIC: &str = "m/2*((Ae*Omega*cos(Omega*t) + L*x'*cos(x))^2 + L*x'*sin(x))";
-/// The same with the square.
+/// T with the square.
 const KINETIC: &str = "m/2*((Ae*Omega*cos(Omega*t) + L*x'*cos(x))^2 + (L*x'*sin(x))^2)";
 /// V of equation (2).
 const POTENTIAL: &str = "m*g*L*(1 - cos(x))";
@@ -54,7 +54,7 @@ pub fn pendulum() -> Mechanism {
     }
 }
 
-/// The units of its letters.
+/// The units of the letters of [`pendulum`].
 pub fn units() -> BTreeMap<Symbol, Dimension> {
     [
         ("x", [0, 0, 0]),
@@ -76,14 +76,23 @@ pub fn units() -> BTreeMap<Symbol, Dimension> {
     .into()
 }
 
-/// Why the paper's equations could not be compared.
+/// The mechanism of the paper with the units of its letters, ready for [`study`](crate::mechanics::study).
+pub fn mechanism() -> MechanismQuestion {
+    MechanismQuestion {
+        mechanism: pendulum(),
+        units: Some(units()),
+        values: BTreeMap::new(),
+    }
+}
+
+/// The reason why the paper's equations could not be compared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PaperError {
     /// The mechanism has no equations.
     #[error(transparent)]
     Mechanics(#[from] MechanicsError),
-    /// It has no groups.
+    /// The mechanism has no groups.
     #[error(transparent)]
     Groups(#[from] NoGroups),
     /// A step of algebra failed.
@@ -97,11 +106,10 @@ pub enum PaperError {
 /// The paper's equations (1) to (8), each beside what is derived.
 ///
 /// # Errors
-/// None for the mechanism above.
+/// [`PaperError`] is never met for the mechanism of [`pendulum`].
 ///
 /// ```
-/// # use lindstedt_dynamics as lindstedt;
-/// use lindstedt::mechanics::paper::findings;
+/// use lindstedt::audit::paper::findings;
 ///
 /// let findings = findings()?;
 /// assert!(findings[0].equation == "(1)" && findings[0].agrees == Some(false));

@@ -1,101 +1,97 @@
 //! Table 1 of the paper, recomputed, and the value of pi that its digits were made with.
 //!
-//! ```text
-//! sgn(x') ~ (2/pi) atan(100 x')                          equation (6)
-//! error   = 100 (1 - (2/pi) atan(100 |x'|)) %
-//! ```
-//!
-//! The printed digits stand in [`TABLE`] to be compared with; nothing is computed from them but the range of pi that they
+//! The printed digits stand in [`SPEEDS`] to be compared with; nothing is computed from them but the range of pi that they
 //! allow. They are read from Table 1 of the paper as it is printed, signs and number of digits included.
 
 use std::f64::consts::PI;
 
-use crate::impact::model::STEEPNESS;
+use crate::impact::STEEPNESS;
+use crate::impact::friction::{FrictionStudy, SpeedRow, arctangent, arctangent_error};
 
-/// What the paper prints at a speed: the arctangent and its error in per cent.
+/// The printed entries of one speed: the arctangent and its error in per cent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Printed {
+pub struct PrintedSpeed {
     /// (2/pi) atan(100 x').
     pub value: &'static str,
     /// The error in per cent.
     pub error: &'static str,
 }
 
-/// The speeds of Table 1 and what is printed there.
-pub const TABLE: [(f64, Printed); 11] = [
+/// The speeds of Table 1, each with its printed entries.
+pub const SPEEDS: [(f64, PrintedSpeed); 11] = [
     (
         -5.0,
-        Printed {
+        PrintedSpeed {
             value: "-0.99923",
             error: "0.07667",
         },
     ),
     (
         -4.0,
-        Printed {
+        PrintedSpeed {
             value: "-0.99891",
             error: "0.10851",
         },
     ),
     (
         -3.0,
-        Printed {
+        PrintedSpeed {
             value: "-0.99838",
             error: "0.16159",
         },
     ),
     (
         -2.0,
-        Printed {
+        PrintedSpeed {
             value: "-0.99732",
             error: "0.26775",
         },
     ),
     (
         -1.0,
-        Printed {
+        PrintedSpeed {
             value: "-0.99414",
             error: "0.58620",
         },
     ),
     (
         0.0,
-        Printed {
+        PrintedSpeed {
             value: "0.00000",
             error: "0.00000",
         },
     ),
     (
         1.0,
-        Printed {
+        PrintedSpeed {
             value: "+0.99413",
             error: "0.58620",
         },
     ),
     (
         2.0,
-        Printed {
+        PrintedSpeed {
             value: "+0.99732",
             error: "0.267747",
         },
     ),
     (
         3.0,
-        Printed {
+        PrintedSpeed {
             value: "+0.99838",
             error: "0.161592",
         },
     ),
     (
         4.0,
-        Printed {
+        PrintedSpeed {
             value: "+0.99891",
             error: "0.108514",
         },
     ),
     (
         5.0,
-        Printed {
+        PrintedSpeed {
             value: "+0.99923",
             error: "0.076667",
         },
@@ -116,27 +112,6 @@ fn value_of(name: &str) -> f64 {
     }
 }
 
-/// The approximation of sgn by equation (6), with this value of pi.
-///
-/// ```
-/// # use lindstedt_impact as lindstedt;
-/// use lindstedt::impact::friction::arctangent;
-///
-/// assert!((arctangent(1.0, std::f64::consts::PI) - 0.993634).abs() < 1e-6);
-/// assert!((arctangent(1.0, 314.0 / 100.0) - 0.994138).abs() < 1e-6);
-/// ```
-pub fn arctangent(speed: f64, pi: f64) -> f64 {
-    2.0 / pi * (STEEPNESS * speed).atan()
-}
-
-/// Its error in per cent; at rest both laws are zero.
-fn error(speed: f64, pi: f64) -> f64 {
-    match speed == 0.0 {
-        true => 0.0,
-        false => 100.0 * (1.0 - arctangent(speed.abs(), pi)),
-    }
-}
-
 /// Whether a number has the printed digits, as many as are printed, rounded and cut off.
 fn has_digits(printed: &str, number: f64) -> [bool; 2] {
     let wanted = printed.trim_start_matches('+');
@@ -152,7 +127,7 @@ fn has_digits(printed: &str, number: f64) -> [bool; 2] {
 /// A printed number, and how the number that belongs there comes to its digits with some pi.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Entry {
-    /// What is printed.
+    /// The entry as it is printed.
     pub printed: &'static str,
     /// Whether they are those of the rounded number.
     pub rounded: bool,
@@ -177,25 +152,19 @@ impl Entry {
     }
 }
 
-/// The two laws at one speed.
+/// A row of the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SpeedRow {
-    /// x', units of omega.
-    pub speed: f64,
-    /// Coulomb's sgn(x').
-    pub sign: f64,
-    /// (2/pi) atan(100 x').
-    pub arctangent: f64,
-    /// How far that is from sgn, per cent.
-    pub error: f64,
-    /// What the paper prints there, where it is one of its speeds: value and error, with what the best pi makes of them.
+pub struct TableRow {
+    /// The two laws at its speed.
+    pub laws: SpeedRow,
+    /// The printed value and error at a speed of the paper, with what the best pi makes of them; nothing at any other speed.
     pub printed: Option<[Entry; 2]>,
 }
 
-/// How many of the printed entries come out with one value of pi.
+/// The number of printed entries that come out with one value of pi.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PiReading {
-    /// How it is written, `22/7`.
+    /// The value as it is written, `22/7`.
     pub name: &'static str,
     /// The value.
     pub value: f64,
@@ -209,7 +178,7 @@ pub struct PiReading {
 
 impl PiReading {
     fn of(name: &'static str, value: f64) -> Self {
-        let entries: Vec<Entry> = TABLE
+        let entries: Vec<Entry> = SPEEDS
             .iter()
             .flat_map(|(speed, printed)| entries(*speed, printed, value))
             .collect();
@@ -223,21 +192,21 @@ impl PiReading {
         }
     }
 
-    /// What the arctangent tends to at high speed with it, 1 with pi itself.
+    /// The limit of the arctangent at high speed with this value, 1 with pi itself.
     pub fn limit(&self) -> f64 {
         PI / self.value
     }
 
-    /// The speed beyond which it is larger than 1, where there is one.
+    /// The speed beyond which the arctangent is larger than 1, where there is one.
     pub fn exceeds_from(&self) -> Option<f64> {
         (self.value < PI).then(|| (0.5 * self.value).tan() / STEEPNESS)
     }
 }
 
-fn entries(speed: f64, printed: &Printed, pi: f64) -> [Entry; 2] {
+fn entries(speed: f64, printed: &PrintedSpeed, pi: f64) -> [Entry; 2] {
     [
         Entry::of(printed.value, arctangent(speed, pi)),
-        Entry::of(printed.error, error(speed, pi)),
+        Entry::of(printed.error, arctangent_error(speed, pi)),
     ]
 }
 
@@ -245,7 +214,7 @@ fn entries(speed: f64, printed: &Printed, pi: f64) -> [Entry; 2] {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
     /// The two laws at the paper's speeds, then at those asked for.
-    pub rows: Vec<SpeedRow>,
+    pub rows: Vec<TableRow>,
     /// Every value of pi that was tried.
     pub readings: Vec<PiReading>,
     /// The least and the greatest pi with which every printed entry comes out, rounded or cut off; nothing where none does.
@@ -254,26 +223,31 @@ pub struct Table {
 }
 
 impl Table {
-    /// Table 1 of the paper, and these speeds beside its own.
-    pub(super) fn of(speeds: &[f64]) -> Self {
+    /// Table 1 of the paper, and the speeds of a study beside its own.
+    ///
+    /// ```
+    /// use lindstedt::{audit::paper::Table, impact::friction};
+    ///
+    /// let table = Table::of(&friction::study(friction::FrictionSetup::default())?);
+    /// assert_eq!((table.best().name, table.best().either), ("3.14", table.entries()));
+    /// # Ok::<(), friction::FrictionError>(())
+    /// ```
+    pub fn of(study: &FrictionStudy) -> Self {
         let readings: Vec<PiReading> = TRIED.map(|name| PiReading::of(name, value_of(name))).into();
         // Of equals the first, which is the shortest.
         let best = (0..readings.len())
             .rev()
             .max_by_key(|index| (readings[*index].either, readings[*index].rounded));
         let best = best.unwrap_or_default();
-        let row = |speed: f64, printed| SpeedRow {
-            speed,
-            sign: if speed == 0.0 { 0.0 } else { speed.signum() },
-            arctangent: arctangent(speed, PI),
-            error: error(speed, PI),
-            printed,
-        };
         let pi = readings[best].value;
-        let own = TABLE
-            .iter()
-            .map(|(speed, printed)| row(*speed, Some(entries(*speed, printed, pi))));
-        let others = speeds.iter().map(|speed| row(*speed, None));
+        let own = SPEEDS.iter().map(|(speed, printed)| TableRow {
+            laws: SpeedRow::at(*speed),
+            printed: Some(entries(*speed, printed, pi)),
+        });
+        let others = study.rows.iter().map(|laws| TableRow {
+            laws: *laws,
+            printed: None,
+        });
         Self {
             rows: own.chain(others).collect(),
             pi_range: pi_range(),
@@ -289,14 +263,14 @@ impl Table {
 
     /// The number of printed entries, values and errors.
     pub fn entries(&self) -> usize {
-        2 * TABLE.len()
+        2 * SPEEDS.len()
     }
 }
 
 /// The values of pi with which every printed entry comes out: each allows a range, since value and error are monotonic in pi.
 fn pi_range() -> Option<[f64; 2]> {
     let mut range = [f64::MIN_POSITIVE, f64::MAX];
-    for (speed, printed) in TABLE.iter().filter(|(speed, _)| *speed != 0.0) {
+    for (speed, printed) in SPEEDS.iter().filter(|(speed, _)| *speed != 0.0) {
         let twice = 2.0 * (STEEPNESS * speed.abs()).atan();
         let allowed = |text: &str| -> Option<[f64; 2]> {
             let size = text.trim_start_matches(['+', '-']);
@@ -331,7 +305,7 @@ mod tests {
     #[test]
     fn the_range_of_pi_is_where_every_entry_comes_out() {
         let [least, greatest] = pi_range().unwrap();
-        let all = |pi: f64| PiReading::of("", pi).either == 2 * TABLE.len();
+        let all = |pi: f64| PiReading::of("", pi).either == 2 * SPEEDS.len();
         let width = greatest - least;
         assert!(width > 0.0 && width < 1e-6, "{width}");
         for part in [0.01, 0.5, 0.99] {

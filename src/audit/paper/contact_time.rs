@@ -1,0 +1,33 @@
+//! The contact time of the paper beside that of every reading of the contact.
+
+use crate::impact::{Quantity, SiImpact};
+
+/// The contact time that the paper prints after its equation (15), in s: compared with, never computed from.
+pub const CONTACT_TIME: f64 = 9.258e-8;
+
+/// The contact time of every reading over the printed [`CONTACT_TIME`]: one, if that were reproduced.
+///
+/// ```
+/// use lindstedt::audit::paper::over_contact_time;
+/// use lindstedt::impact::{Setup, solve};
+/// use lindstedt::problem::Problem;
+///
+/// let file: Problem = "".parse()?;
+/// let found = solve(Setup::try_from(&file)?)?;
+/// let ratio = found.si().map(|si| over_contact_time(&si).runge_kutta);
+/// assert!(ratio.is_some_and(|ratio| ratio > 1000.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn over_contact_time(si: &SiImpact) -> Quantity {
+    let over = |time: f64| time / CONTACT_TIME;
+    Quantity {
+        name: "duration / printed",
+        runge_kutta: over(si.duration.runge_kutta),
+        closed_forms: si.duration.closed_forms.iter().copied().map(over).collect(),
+    }
+}
+
+/// Whether a contact time with this ratio to the printed one is that one, within the tolerance.
+pub fn is_reproduced(ratio: f64, tolerance: f64) -> bool {
+    (ratio - 1.0).abs() <= tolerance
+}

@@ -344,9 +344,10 @@ impl Path {
     pub fn sample(&self, times: &[f64], kept: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
         match &self.motion {
             Motion::Taylor { steps, start } => {
-                let within = |time: &f64| *time - start >= 0.0 && *time <= self.end;
-                let own: Vec<f64> = times.iter().copied().filter(within).collect();
-                kept.extend_from_slice(&own);
+                let before = times.partition_point(|time| *time - start < 0.0);
+                let own = &times[before..];
+                let own = &own[..own.partition_point(|time| *time <= self.end)];
+                kept.extend_from_slice(own);
                 let since_start: Vec<f64> = own.iter().map(|time| time - start).collect();
                 taylor::sample(steps, &since_start, columns);
             }
@@ -381,13 +382,13 @@ pub struct Solver {
     system: System,
     events: Vec<Event>,
     options: Options,
-    /// What Runge-Kutta has no use for.
+    /// Runge-Kutta has no use for it.
     expansion: Option<Result<Expansion, RecurrenceError>>,
 }
 
 impl Solver {
-    /// The same equations with other numbers for the letters; nothing where the equations would be followed in another way, so that they
-    /// are to be made ready anew: beside corners, whose arguments may be in proportion for some numbers and not for others.
+    /// These equations take other numbers for their letters. `None` says that they have to be made ready anew: beside corners, whose
+    /// arguments may be in proportion for some numbers and not for others, and where a letter is one, a factor that may be left out.
     #[must_use]
     pub fn with_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<Self> {
         let Some(Ok(expansion)) = &self.expansion else {

@@ -459,7 +459,8 @@ struct Ready {
 }
 
 impl Ready {
-    /// The same for a course that differs from this one in its numbers and its start alone; nothing where other numbers make other equations.
+    /// These equations take the numbers of a course that differs in its numbers and its start alone. `None` says that other numbers make other
+    /// equations.
     fn with_numbers(&self, course: &Course) -> Option<Self> {
         let mut values = self.values.clone();
         for (name, value) in &mut values {

@@ -37,9 +37,8 @@ pub(super) fn powers(h: f64, into: &mut [f64]) {
     // h^2, h^4, h^8, ... and what stands before them.
     let (mut half, mut square) = (1, h);
     while half < into.len() {
-        let (lower, higher) = into.split_at_mut(half);
-        for (power, low) in higher.iter_mut().zip(lower) {
-            *power = *low * square;
+        for k in half..into.len().min(2 * half) {
+            into[k] = into[k - half] * square;
         }
         (half, square) = (2 * half, square * square);
     }

@@ -457,7 +457,7 @@ pub(super) struct Expansion {
 }
 
 impl Expansion {
-    /// The same with other numbers for the letters; nothing where other numbers make other recurrences.
+    /// This expansion takes other numbers for the letters; it has none where other numbers make other recurrences.
     pub(super) fn with_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<Self> {
         let mut other = self.clone();
         other.tape.set_numbers(numbers).then_some(other)
@@ -733,10 +733,18 @@ impl Allowance {
     /// Whether the last terms of a series that begins with the order `lead`, at the place with these powers, are within the tolerance.
     fn is_within(&self, series: &[f64], lead: usize, powers: &[f64]) -> bool {
         let term = |k: usize| series[k].abs() * powers[k];
-        let size = (lead..=lead.max(self.order / 2)).map(term).fold(0.0, f64::max);
-        let last = (Self::first(self.order)..=self.order).zip(self.parts);
-        let mut last = last.filter(|(k, _)| *k > lead);
-        last.all(|(k, part)| term(k) <= size * part)
+        let mut size = 0.0_f64;
+        for k in lead..lead.max(self.order / 2) + 1 {
+            size = size.max(term(k));
+        }
+        let first = Self::first(self.order);
+        for (k, part) in (first..self.order + 1).zip(self.parts) {
+            let is_within = k <= lead || term(k) <= size * part;
+            if !is_within {
+                return false;
+            }
+        }
+        true
     }
 }
 

@@ -264,3 +264,44 @@ fn a_sweep_that_is_interrupted_begins_no_other_motion() {
     course.after = 5.0;
     assert!(sweep(&course, &["k".into()], &grid, || ()).expect("motions").is_empty());
 }
+
+/// Each motion of a sweep is bit for bit the one that is followed by itself: smooth, with corners that move, with pulses, powers and friction.
+#[test]
+fn a_motion_of_a_sweep_is_that_followed_alone() {
+    let rising = |expression: &str| Some(Section::Rising(parse_expression(expression).expect("an expression")));
+    let cases = [
+        ("x'' + 2*p*x' + sin(x) = 0", "p", None),
+        ("x'' + 2*p*x' + p*sin(p*x) = 0", "p", rising("x - p")),
+        ("x'' + x'/10 + p*x + x^3 = cos(p*t)", "p", every("2*pi/p")),
+        ("x'' + x + log(2 + p*x) = 0", "p", rising("x'")),
+        (
+            "x'' + x + max(p*x - 1, 0)^(3/2) + max(x - p, 0)*x' = 0",
+            "p",
+            rising("x"),
+        ),
+        ("x'' + x + sgn(x')*p = cos(t)", "p", rising("x'")),
+        ("x'' + x + abs(x)^p*x' = exp(-((t - 5)/p*20)^2)", "p", None),
+        ("x'' + x - p/(x + 3) = 0", "x", rising("x'")),
+    ];
+    for (equation, name, section) in cases {
+        let mut course = course(equation, &[("x", 1.5)], 20.0);
+        course.section = section;
+        course.values.insert(Symbol::new("p"), 0.3);
+        let grid: Vec<Vec<f64>> = [0.3, 0.5, 1.0, 1.25, 2.0].map(|value| vec![value]).into();
+        let motions = sweep(&course, &[Symbol::new(name)], &grid, || ()).expect("motions");
+        assert_eq!(motions.len(), grid.len());
+        for (swept, values) in motions.iter().zip(&grid) {
+            let mut alone = course.clone();
+            match name {
+                "x" => alone.start[0] = values[0],
+                _ => _ = alone.values.insert(Symbol::new(name), values[0]),
+            }
+            let alone = alone.follow().expect("a motion");
+            assert_eq!(swept.reason, alone.reason(), "{equation}");
+            assert_eq!(swept.state, alone.at(alone.end()).expect("a state"), "{equation}");
+            assert_eq!(swept.extremes, alone.extremes(), "{equation}");
+            assert_eq!(swept.crossings, alone.crossings(), "{equation}");
+            assert_eq!(swept.touches, alone.touches(), "{equation}");
+        }
+    }
+}

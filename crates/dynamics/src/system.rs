@@ -34,7 +34,7 @@ use crate::series::recurrence::RecurrenceError;
 use crate::symbol::Symbol;
 
 use narrow::Argument;
-use taylor::Step;
+use taylor::{Expansion, Step};
 
 /// Equations ready to be followed.
 ///
@@ -329,6 +329,105 @@ impl Path {
     }
 }
 
+impl Path {
+    /// One state, by its number, at a time; `None` outside the path.
+    pub fn state_at(&self, time: f64, state: usize) -> Option<f64> {
+        match &self.motion {
+            Motion::Taylor { .. } if time.is_nan() || time > self.end => None,
+            Motion::Taylor { steps, start } => taylor::state_at(steps, time - start, state),
+            Motion::RungeKutta(_) => self.at(time)?.get(state).copied(),
+        }
+    }
+
+    /// The states at many times, in increasing order: those of the times that are within the path are added to `kept`, and the first
+    /// states there to the columns, one each. Costs less than as many calls of [`Path::at`] and has the same values.
+    pub fn sample(&self, times: &[f64], kept: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
+        match &self.motion {
+            Motion::Taylor { steps, start } => {
+                let before = times.partition_point(|time| *time - start < 0.0);
+                let own = &times[before..];
+                let own = &own[..own.partition_point(|time| *time <= self.end)];
+                kept.extend_from_slice(own);
+                let since_start: Vec<f64> = own.iter().map(|time| time - start).collect();
+                taylor::sample(steps, &since_start, columns);
+            }
+            Motion::RungeKutta(_) => {
+                for time in times {
+                    let Some(states) = self.at(*time) else { continue };
+                    kept.push(*time);
+                    for (column, state) in columns.iter_mut().zip(states) {
+                        column.push(state);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A system made ready to be followed many times: its recurrences are found once.
+///
+/// ```
+/// # use lindstedt_dynamics as lindstedt;
+/// use lindstedt::system::{Options, System};
+///
+/// let stiffness = |k: f64| [("k".into(), k)].into();
+/// let solver = System::parse(&[("x", "v"), ("v", "-k*x")], &[("k", 4.0)])?.solver(&[], &Options::default());
+/// let slower = solver.with_numbers(&stiffness(0.25)).expect("equations of the same form");
+/// let path = slower.solve(0.0, &[1.0, 0.0], 2.0)?;
+/// assert!((path.at(2.0).expect("a state")[0] - 1.0_f64.cos()).abs() < 1e-14);
+/// # Ok::<(), lindstedt::system::SystemError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Solver {
+    system: System,
+    events: Vec<Event>,
+    options: Options,
+    /// Runge-Kutta has no use for it.
+    expansion: Option<Result<Expansion, RecurrenceError>>,
+}
+
+impl Solver {
+    /// These equations take other numbers for their letters. `None` says that they have to be made ready anew: beside corners, whose
+    /// arguments may be in proportion for some numbers and not for others, and where a letter is one, a factor that may be left out.
+    #[must_use]
+    pub fn with_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<Self> {
+        let Some(Ok(expansion)) = &self.expansion else {
+            return None;
+        };
+        Some(Self {
+            expansion: Some(Ok(expansion.with_numbers(numbers)?)),
+            system: System {
+                numbers: numbers.clone(),
+                ..self.system.clone()
+            },
+            events: self.events.clone(),
+            options: self.options,
+        })
+    }
+
+    /// Its equations with other critical times.
+    #[must_use]
+    pub fn with_critical_times(self, times: &[f64]) -> Self {
+        Self {
+            system: self.system.with_critical_times(times),
+            ..self
+        }
+    }
+
+    /// As [`System::solve`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn solve(&self, start: f64, values: &[f64], end: f64) -> Result<Path, SystemError> {
+        self.system.check(start, values, end, &self.options)?;
+        let (system, events, options) = (&self.system, &self.events, &self.options);
+        match &self.expansion {
+            Some(expansion) => taylor::follow(system, [start, end], values, events, options, expansion.clone()?),
+            None => runge_kutta::follow(system, [start, end], values, events, options),
+        }
+    }
+}
+
 impl System {
     /// The equations `(state, right side)` in the time `t`, as texts; every other symbol has its value in `numbers`.
     ///
@@ -413,6 +512,32 @@ impl System {
         events: &[Event],
         options: &Options,
     ) -> Result<Path, SystemError> {
+        self.check(start, values, end, options)?;
+        match options.integrator {
+            Integrator::Taylor => {
+                let expansion = taylor::expansion(self, events, options.tolerance)?;
+                taylor::follow(self, [start, end], values, events, options, expansion)
+            }
+            Integrator::RungeKutta => runge_kutta::follow(self, [start, end], values, events, options),
+        }
+    }
+
+    /// This system ready to be followed many times with these events.
+    pub fn solver(self, events: &[Event], options: &Options) -> Solver {
+        let expansion = match options.integrator {
+            Integrator::Taylor => Some(taylor::expansion(&self, events, options.tolerance)),
+            Integrator::RungeKutta => None,
+        };
+        Solver {
+            system: self,
+            events: events.to_vec(),
+            options: *options,
+            expansion,
+        }
+    }
+
+    /// Whether it can be followed from these values between these times.
+    fn check(&self, start: f64, values: &[f64], end: f64, options: &Options) -> Result<(), SystemError> {
         let size = self.state.len();
         if values.len() != size {
             return Err(SystemError::Length {
@@ -428,10 +553,7 @@ impl System {
         if let Some((state, value)) = large {
             return Err(SystemError::Large(*state, *value));
         }
-        match options.integrator {
-            Integrator::Taylor => taylor::follow(self, [start, end], values, events, options),
-            Integrator::RungeKutta => runge_kutta::follow(self, [start, end], values, events, options),
-        }
+        Ok(())
     }
 }
 

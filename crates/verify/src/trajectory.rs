@@ -28,7 +28,7 @@ use crate::interrupt::Interrupt;
 use crate::mechanics::{Equations, MechanicsError, Mechanism, Rates};
 use crate::oscillator::Oscillator;
 use crate::symbol::{Symbol, fresh};
-use crate::system::{End, Integrator, Options, Path, System, SystemError};
+use crate::system::{End, Integrator, Options, Path, Solver, System, SystemError};
 
 pub use section::{Crossing, MOST_CROSSINGS, Section};
 pub use sensitivity::DISPLACEMENT;
@@ -288,12 +288,17 @@ impl Course {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn follow(self) -> Result<Trajectory, TrajectoryError> {
-        let first = self.clone().follow_by(Integrator::Taylor);
+        self.followed(None, Accounted::Yes)
+    }
+
+    /// [`Course::follow`], with what is ready of another course that has other numbers, or another start, alone.
+    fn followed(self, ready: Option<&Ready>, accounted: Accounted) -> Result<Trajectory, TrajectoryError> {
+        let first = self.clone().followed_by(Integrator::Taylor, ready, accounted);
         // A start without a series, or a series that ends, may still be followed by evaluation alone.
         match first {
             Ok(motion) if motion.reason != End::Singular => Ok(motion),
             Ok(_) | Err(TrajectoryError::System(SystemError::Start(_))) => {
-                let second = self.follow_by(Integrator::RungeKutta);
+                let second = self.followed_by(Integrator::RungeKutta, None, accounted);
                 match (&first, &second) {
                     (Ok(one), Ok(other)) if one.end() >= other.end() => first,
                     (Ok(_), Err(_)) => first,
@@ -309,6 +314,78 @@ impl Course {
     /// # Errors
     /// As [`Course::follow`].
     pub fn follow_by(self, integrator: Integrator) -> Result<Trajectory, TrajectoryError> {
+        self.followed_by(integrator, None, Accounted::Yes)
+    }
+
+    fn followed_by(
+        self,
+        integrator: Integrator,
+        ready: Option<&Ready>,
+        accounted: Accounted,
+    ) -> Result<Trajectory, TrajectoryError> {
+        let adapted = match ready {
+            Some(ready) => {
+                self.check_start()?;
+                ready.with_numbers(&self)
+            }
+            None => None,
+        };
+        let ready = match adapted {
+            Some(ready) => ready,
+            None => self.ready(integrator)?,
+        };
+        let mut start = self.start.clone();
+        start.resize(ready.states.len(), 0.0);
+        let equations = StateEquations {
+            states: &ready.states,
+            right: &ready.right,
+            values: &ready.values,
+            critical: &ready.critical,
+        };
+        let (pieces, reason) = self.pieces(
+            &ready.solver,
+            &equations,
+            start,
+            &self.options(integrator),
+            ready.recorded,
+        )?;
+        let mut motion = Trajectory {
+            course: self,
+            integrator,
+            balance: None,
+            pieces,
+            on_section: OnSection::default(),
+            reason,
+        };
+        if accounted == Accounted::Yes {
+            motion.balance = motion.account();
+        }
+        motion.on_section = motion.find_on_section()?;
+        Ok(motion)
+    }
+
+    fn options(&self, integrator: Integrator) -> Options {
+        Options {
+            integrator,
+            tolerance: self.tolerance,
+            step_limit: self.step_limit,
+            interrupt: self.interrupt,
+        }
+    }
+
+    /// Whether the equations have digits where it begins.
+    fn check_start(&self) -> Result<(), TrajectoryError> {
+        let mut at_start = self.values.clone();
+        at_start.extend(self.rates.states.iter().copied().zip(self.start.iter().copied()));
+        at_start.insert(Symbol::new("t"), 0.0);
+        for right in &self.rates.right {
+            right.check_digits(&at_start, &self.rates.states)?;
+        }
+        Ok(())
+    }
+
+    /// Its equations, made ready to be followed by this integrator.
+    fn ready(&self, integrator: Integrator) -> Result<Ready, TrajectoryError> {
         let needed = self.parameters();
         let missing: Vec<Symbol> = self
             .parameters_of_motion()
@@ -321,12 +398,7 @@ impl Course {
         if !(self.duration > 0.0 && self.duration.is_finite()) {
             return Err(TrajectoryError::Duration(self.duration));
         }
-        let mut at_start = self.values.clone();
-        at_start.extend(self.rates.states.iter().copied().zip(self.start.iter().copied()));
-        at_start.insert(Symbol::new("t"), 0.0);
-        for right in &self.rates.right {
-            right.check_digits(&at_start, &self.rates.states)?;
-        }
+        self.check_start()?;
         let mut states = self.rates.states.clone();
         let mut right: Vec<Expr> = self
             .rates
@@ -334,7 +406,6 @@ impl Course {
             .iter()
             .map(|right| roots_across_corners(right, &self.values))
             .collect::<Result<_, _>>()?;
-        let mut start = self.start.clone();
         let mut taken: Vec<Symbol> = states.iter().chain(&needed).copied().collect();
         let energy = self.energy.as_ref().filter(|_| self.missing_for_energy().is_empty());
         for (_, power) in energy.iter().flat_map(|energy| &energy.powers) {
@@ -342,7 +413,6 @@ impl Course {
             taken.push(work);
             states.push(work);
             right.push(roots_across_corners(power, &self.values)?);
-            start.push(0.0);
         }
         let values: BTreeMap<Symbol, f64> = needed
             .iter()
@@ -350,30 +420,63 @@ impl Course {
             .collect();
         let critical = pulse::critical_times(&right, &states, &values, self.duration);
         let system = System::new(&states, Symbol::new("t"), &right, &values)?.with_critical_times(&critical);
-        let options = Options {
-            integrator,
-            tolerance: self.tolerance,
-            step_limit: self.step_limit,
-            interrupt: self.interrupt,
-        };
-        let equations = StateEquations {
-            states: &states,
-            right: &right,
-            values: &values,
-            critical: &critical,
-        };
-        let (pieces, reason) = self.pieces(&system, &equations, start, &options)?;
-        let mut motion = Trajectory {
-            course: self,
-            integrator,
-            balance: None,
-            pieces,
-            on_section: OnSection::default(),
-            reason,
-        };
-        motion.balance = motion.account();
-        motion.on_section = motion.find_on_section()?;
-        Ok(motion)
+        let moving = Rates { states, right };
+        let section = self.section.as_ref();
+        let events = section.map_or(vec![], |section| section.events(&moving));
+        let Rates { states, right } = moving;
+        Ok(Ready {
+            solver: system.solver(&events, &self.options(integrator)),
+            recorded: events.len(),
+            states,
+            right,
+            values,
+            critical,
+        })
+    }
+}
+
+/// Whether the energy of a motion is accounted for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Accounted {
+    Yes,
+    No,
+}
+
+/// The equations of a course, made ready to be followed.
+#[derive(Clone, Debug)]
+struct Ready {
+    /// Coordinates, velocities and works.
+    states: Vec<Symbol>,
+    /// The rate of each, roots at corners as they are followed.
+    right: Vec<Expr>,
+    /// The value of every other symbol but the time.
+    values: BTreeMap<Symbol, f64>,
+    /// Times that no step crosses.
+    critical: Vec<f64>,
+    solver: Solver,
+    /// The number of events of the section.
+    recorded: usize,
+}
+
+impl Ready {
+    /// These equations take the numbers of a course that differs in its numbers and its start alone. `None` says that other numbers make other
+    /// equations.
+    fn with_numbers(&self, course: &Course) -> Option<Self> {
+        let mut values = self.values.clone();
+        for (name, value) in &mut values {
+            *value = *course.values.get(name)?;
+        }
+        // Without corners the roots are as they were typed, whatever the numbers.
+        let solver = self.solver.with_numbers(&values)?;
+        let critical = pulse::critical_times(&self.right, &self.states, &values, course.duration);
+        Some(Self {
+            states: self.states.clone(),
+            right: self.right.clone(),
+            recorded: self.recorded,
+            solver: solver.with_critical_times(&critical),
+            values,
+            critical,
+        })
     }
 }
 
@@ -407,6 +510,21 @@ impl Piece {
     }
 }
 
+/// The states at many times.
+struct Sampled {
+    /// Those of the times at which there are states.
+    times: Vec<f64>,
+    /// State by state the values then.
+    columns: Vec<Vec<f64>>,
+}
+
+impl Sampled {
+    /// All states at one of the times.
+    fn row(&self, index: usize) -> Vec<f64> {
+        self.columns.iter().map(|column| column[index]).collect()
+    }
+}
+
 impl Trajectory {
     /// The account of the energy.
     fn account(&self) -> Option<Balance> {
@@ -423,8 +541,7 @@ impl Trajectory {
             .filter_map(|part| self.compiled(part))
             .collect();
         let count = self.course.rates.states.len();
-        let at = |time: f64| {
-            let state = self.all_at(time)?;
+        let at = |time: f64, state: &[f64]| {
             let (state, works) = state.split_at(count);
             // Kinetic and potential energy may cancel each other: the largest of them counts beside their sum.
             let parts = parts.iter().map(|part| part(time, state).abs());
@@ -434,11 +551,16 @@ impl Trajectory {
         };
         // The sum of nothing is minus zero.
         let sum = |works: &[f64]| works.iter().fold(0.0, |sum, work| sum + work);
-        let (start, ..) = at(0.0)?;
-        let (end, works, _) = at(self.end())?;
+        let (start, ..) = at(0.0, &self.all_at(0.0)?)?;
+        let (end, works, _) = at(self.end(), &self.all_at(self.end())?)?;
         let (mut astray, mut moved) = (0.0_f64, 0.0_f64);
-        for index in 0..=ACCOUNTS {
-            let (now, works, largest) = at(self.end() * f64::from(index) / f64::from(ACCOUNTS))?;
+        let times = (0..=ACCOUNTS).map(|index| self.end() * f64::from(index) / f64::from(ACCOUNTS));
+        let sampled = self.sample(times.collect(), count + energy.powers.len());
+        if sampled.times.len() != ACCOUNTS as usize + 1 {
+            return None;
+        }
+        for (index, time) in sampled.times.iter().enumerate() {
+            let (now, works, largest) = at(*time, &sampled.row(index))?;
             let work = sum(&works);
             astray = astray.max((now - start - work).abs());
             moved = moved.max(now.abs()).max(work.abs()).max(largest);
@@ -468,6 +590,39 @@ impl Trajectory {
     fn all_at(&self, time: f64) -> Option<Vec<f64>> {
         let place = self.pieces.partition_point(|piece| piece.end() < time);
         self.pieces.get(place)?.at(time)
+    }
+
+    /// One coordinate or velocity at a time.
+    fn state_at(&self, time: f64, state: usize) -> Option<f64> {
+        let place = self.pieces.partition_point(|piece| piece.end() < time);
+        let piece = self.pieces.get(place)?;
+        match piece.is_held() {
+            true => piece.at(time)?.get(state).copied(),
+            false => piece.path.state_at(time, state),
+        }
+    }
+
+    /// The first states at many times, in increasing order.
+    fn sample(&self, times: Vec<f64>, count: usize) -> Sampled {
+        let mut kept = Vec::with_capacity(times.len());
+        let mut columns = vec![Vec::with_capacity(times.len()); count];
+        let mut rest = times.as_slice();
+        for piece in &self.pieces {
+            let (own, others) = rest.split_at(rest.partition_point(|time| *time <= piece.end()));
+            rest = others;
+            if !piece.is_held() {
+                piece.path.sample(own, &mut kept, &mut columns);
+                continue;
+            }
+            for time in own {
+                let Some(states) = piece.at(*time) else { continue };
+                kept.push(*time);
+                for (column, state) in columns.iter_mut().zip(states) {
+                    column.push(state);
+                }
+            }
+        }
+        Sampled { times: kept, columns }
     }
 
     /// The stretches of time, from when until when, on which dry friction holds something: at rest, on a belt or on another body.

@@ -5,6 +5,31 @@ pub(super) fn value(series: &[f64], s: f64) -> f64 {
     series.iter().rev().fold(0.0, |sum, coefficient| sum * s + coefficient)
 }
 
+/// The values at several places, each as [`value`] has it: several sums at a time wait less on each other than one.
+pub(super) fn values(series: &[f64], places: &[f64], into: &mut Vec<f64>) {
+    const LANES: usize = 8;
+    for places in places.chunks(LANES) {
+        let mut at = [0.0; LANES];
+        at[..places.len()].copy_from_slice(places);
+        // One by one, so that they stay in registers in unoptimised builds too.
+        let [a, b, c, d, e, f, g, h] = at;
+        let [mut of_a, mut of_b, mut of_c, mut of_d] = [0.0; 4];
+        let [mut of_e, mut of_f, mut of_g, mut of_h] = [0.0; 4];
+        for &coefficient in series.iter().rev() {
+            of_a = of_a * a + coefficient;
+            of_b = of_b * b + coefficient;
+            of_c = of_c * c + coefficient;
+            of_d = of_d * d + coefficient;
+            of_e = of_e * e + coefficient;
+            of_f = of_f * f + coefficient;
+            of_g = of_g * g + coefficient;
+            of_h = of_h * h + coefficient;
+        }
+        let sums = [of_a, of_b, of_c, of_d, of_e, of_f, of_g, of_h];
+        into.extend_from_slice(&sums[..places.len()]);
+    }
+}
+
 /// `h^0, h^1, ...`, as many as there is room for, each with a multiplication.
 pub(super) fn powers(h: f64, into: &mut [f64]) {
     let Some(first) = into.first_mut() else { return };
@@ -12,9 +37,8 @@ pub(super) fn powers(h: f64, into: &mut [f64]) {
     // h^2, h^4, h^8, ... and what stands before them.
     let (mut half, mut square) = (1, h);
     while half < into.len() {
-        let (lower, higher) = into.split_at_mut(half);
-        for (power, low) in higher.iter_mut().zip(lower) {
-            *power = *low * square;
+        for k in half..into.len().min(2 * half) {
+            into[k] = into[k - half] * square;
         }
         (half, square) = (2 * half, square * square);
     }

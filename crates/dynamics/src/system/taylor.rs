@@ -11,8 +11,10 @@
 //!
 //! Time is counted from the start, so that a late start costs no digits.
 
+use std::collections::BTreeMap;
+
 use super::narrow::{Kind, end_of_step};
-use super::polynomial::{first_root, powers, sign_at_start, value};
+use super::polynomial::{first_root, powers, sign_at_start, value, values};
 use super::{
     End, Event, Motion, Occurrence, Options, Path, System, SystemError, end_of_range, is_vanishing, within_range,
     without_value,
@@ -39,6 +41,35 @@ pub(super) fn at(steps: &[Step], time: f64) -> Option<Vec<f64>> {
     Some(polynomials.map(|series| value(series, time - step.start)).collect())
 }
 
+/// One state at such a time.
+pub(super) fn state_at(steps: &[Step], time: f64, state: usize) -> Option<f64> {
+    let after = steps.partition_point(|step| step.start <= time);
+    let step = steps.get(after.checked_sub(1)?)?;
+    let series = step.coefficients.chunks(step.order + 1).nth(state)?;
+    Some(value(series, time - step.start))
+}
+
+/// The first states, a column each, at such times in increasing order.
+pub(super) fn sample(steps: &[Step], mut times: &[f64], columns: &mut [Vec<f64>]) {
+    let mut places = Vec::new();
+    let mut following = steps.iter().skip(1).peekable();
+    let Some(mut step) = steps.first() else { return };
+    while let Some(first) = times.first() {
+        while let Some(next) = following.next_if(|next| next.start <= *first) {
+            step = next;
+        }
+        let until = following.peek().map(|next| next.start);
+        let count = until.map_or(times.len(), |until| times.partition_point(|time| *time < until));
+        let (own, others) = times.split_at(count);
+        places.clear();
+        places.extend(own.iter().map(|time| time - step.start));
+        for (series, column) in step.coefficients.chunks(step.order + 1).zip(&mut *columns) {
+            values(series, &places, column);
+        }
+        times = others;
+    }
+}
+
 /// Whether there are recurrences for the right sides of a system and these events.
 ///
 /// # Errors
@@ -49,7 +80,7 @@ pub(super) fn check(system: &System, events: &[Event]) -> Result<(), RecurrenceE
 }
 
 /// The right sides of a system and these events, to be expanded so far that steps within this tolerance are cheapest.
-fn expansion(system: &System, events: &[Event], tolerance: f64) -> Result<Expansion, RecurrenceError> {
+pub(super) fn expansion(system: &System, events: &[Event], tolerance: f64) -> Result<Expansion, RecurrenceError> {
     /// An argument need be known to this part of itself only.
     const CLOSELY: f64 = 1e-9;
     let order = order(tolerance);
@@ -104,15 +135,15 @@ pub(super) fn first_step(
     Some((reach, (0..values.len()).map(size).collect()))
 }
 
-/// The path between two times from these values.
+/// The path between two times from these values, with the expansion of these events.
 pub(super) fn follow(
     system: &System,
     [start, end]: [f64; 2],
     values: &[f64],
     events: &[Event],
     options: &Options,
+    mut expansion: Expansion,
 ) -> Result<Path, SystemError> {
-    let mut expansion = expansion(system, events, options.tolerance)?;
     expansion.begin(start, values);
     let mut run = Run {
         system,
@@ -426,6 +457,12 @@ pub(super) struct Expansion {
 }
 
 impl Expansion {
+    /// This expansion takes other numbers for the letters; it has none where other numbers make other recurrences.
+    pub(super) fn with_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<Self> {
+        let mut other = self.clone();
+        other.tape.set_numbers(numbers).then_some(other)
+    }
+
     /// Takes the side of every corner on which this point lies, or to which it is going.
     pub(super) fn begin(&mut self, time: f64, values: &[f64]) {
         // The argument of one corner may depend on the side of another.
@@ -696,10 +733,18 @@ impl Allowance {
     /// Whether the last terms of a series that begins with the order `lead`, at the place with these powers, are within the tolerance.
     fn is_within(&self, series: &[f64], lead: usize, powers: &[f64]) -> bool {
         let term = |k: usize| series[k].abs() * powers[k];
-        let size = (lead..=lead.max(self.order / 2)).map(term).fold(0.0, f64::max);
-        let last = (Self::first(self.order)..=self.order).zip(self.parts);
-        let mut last = last.filter(|(k, _)| *k > lead);
-        last.all(|(k, part)| term(k) <= size * part)
+        let mut size = 0.0_f64;
+        for k in lead..lead.max(self.order / 2) + 1 {
+            size = size.max(term(k));
+        }
+        let first = Self::first(self.order);
+        for (k, part) in (first..self.order + 1).zip(self.parts) {
+            let is_within = k <= lead || term(k) <= size * part;
+            if !is_within {
+                return false;
+            }
+        }
+        true
     }
 }
 

@@ -194,7 +194,11 @@ impl Recurrences {
             return Ok(place);
         }
         match self.numbers.get(&symbol) {
-            Some(number) => Ok(self.constant(*number)),
+            Some(number) => {
+                let place = self.constant(*number);
+                self.tape.named.push((symbol, place));
+                Ok(place)
+            }
             None => Err(RecurrenceError::Unknown(symbol)),
         }
     }

@@ -13,7 +13,10 @@
 //! An order costs one product sum for each product, quotient and integral: `n` multiplications, or fewer where an operand is a
 //! number or grows like time.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
+
+use crate::symbol::Symbol;
 
 /// What a place holds; operands are places of series.
 #[derive(Clone, Debug)]
@@ -115,6 +118,8 @@ pub struct Tape {
     /// `1/n`.
     inverse: Vec<f64>,
     pub(super) corners: Vec<Corner>,
+    /// The letters with a number, each with its place.
+    pub(super) named: Vec<(Symbol, usize)>,
 }
 
 impl Tape {
@@ -130,6 +135,7 @@ impl Tape {
             slopes: vec![],
             inverse: (0..degree + 2).map(|n| 1.0 / n as f64).collect(),
             corners: vec![],
+            named: vec![],
         }
     }
 
@@ -218,6 +224,25 @@ impl Tape {
     /// Sets a coefficient of a variable.
     pub fn set(&mut self, place: usize, order: usize, value: f64) {
         self.series[place][order] = value;
+    }
+
+    /// Sets the numbers of letters anew; `false` where the operations may be others for these numbers, and where one is missing. With
+    /// corners the numbers say which of them are one.
+    #[must_use]
+    pub fn set_numbers(&mut self, numbers: &BTreeMap<Symbol, f64>) -> bool {
+        for index in 0..self.named.len() {
+            let (name, place) = self.named[index];
+            let before = self.series(place)[0];
+            match numbers.get(&name) {
+                Some(number) if number.to_bits() == before.to_bits() => {}
+                // A factor of one may be left out.
+                Some(number) if self.corners.is_empty() && *number != 1.0 && before != 1.0 => {
+                    self.set(place, 0, *number)
+                }
+                _ => return false,
+            }
+        }
+        true
     }
 
     /// The series at a place; what has no value is not a finite number.
@@ -356,33 +381,47 @@ impl Tape {
     }
 }
 
-/// `sum_k a_k b_(n-k)` over these orders.
+/// `sum_k a_k b_(n-k)` over these orders. Two sums, of even and of odd k: half the waiting of one on the other.
 fn products(a: &[f64], b: &[f64], orders: Range<usize>, n: usize) -> f64 {
-    let [sum] = products_with(a, [b], orders, n);
-    sum
+    if orders.is_empty() {
+        return 0.0;
+    }
+    let (a, b) = (&a[orders.clone()], &b[n + 1 - orders.end..=n - orders.start]);
+    let (mut even, mut odd) = (0.0, 0.0);
+    let (pairs, backwards) = (a.chunks_exact(2), b.rchunks_exact(2));
+    let last = pairs.remainder().iter().zip(backwards.remainder());
+    for (a, b) in pairs.zip(backwards) {
+        even += a[0] * b[1];
+        odd += a[1] * b[0];
+    }
+    for (a, b) in last {
+        even += a * b;
+    }
+    even + odd
 }
 
-/// As [`products`], of one series with several others. Two sums each, of even and of odd k: half the waiting of one on the other.
-fn products_with<const M: usize>(a: &[f64], others: [&[f64]; M], orders: Range<usize>, n: usize) -> [f64; M] {
-    let (mut even, mut odd) = ([0.0; M], [0.0; M]);
-    let a = &a[..orders.end];
-    let others = others.map(|b| &b[..=n]);
-    let mut k = orders.start;
-    while k + 1 < orders.end {
-        for (other, b) in others.iter().enumerate() {
-            even[other] += a[k] * b[n - k];
-            odd[other] += a[k + 1] * b[n - k - 1];
-        }
-        k += 2;
+/// As [`products`], of one series with two others.
+fn products_with(a: &[f64], [b, c]: [&[f64]; 2], orders: Range<usize>, n: usize) -> [f64; 2] {
+    if orders.is_empty() {
+        return [0.0; 2];
     }
-    if k < orders.end {
-        for (other, b) in others.iter().enumerate() {
-            even[other] += a[k] * b[n - k];
-        }
+    let a = &a[orders.clone()];
+    let [b, c] = [b, c].map(|other| &other[n + 1 - orders.end..=n - orders.start]);
+    let (mut even, mut odd) = ([0.0; 2], [0.0; 2]);
+    let (pairs, [of_b, of_c]) = (a.chunks_exact(2), [b, c].map(|other| other.rchunks_exact(2)));
+    let last = pairs
+        .remainder()
+        .iter()
+        .zip(of_b.remainder().iter().zip(of_c.remainder()));
+    for (a, (b, c)) in pairs.zip(of_b.zip(of_c)) {
+        even[0] += a[0] * b[1];
+        odd[0] += a[1] * b[0];
+        even[1] += a[0] * c[1];
+        odd[1] += a[1] * c[0];
     }
-    let mut sums = [0.0; M];
-    for (sum, (even, odd)) in sums.iter_mut().zip(even.iter().zip(&odd)) {
-        *sum = even + odd;
+    for (a, (b, c)) in last {
+        even[0] += a * b;
+        even[1] += a * c;
     }
-    sums
+    [even[0] + odd[0], even[1] + odd[1]]
 }

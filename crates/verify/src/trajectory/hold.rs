@@ -20,7 +20,7 @@ use crate::exact::{from_f64, ratio};
 use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
 use crate::mechanics::{Rates, linear};
 use crate::symbol::{Symbol, fresh_stem};
-use crate::system::{End, Event, Options, System};
+use crate::system::{End, Event, Options, Solver, System};
 
 /// A speed that rounding leaves of one that is zero, beside speeds and places of one.
 const AT_REST: f64 = 1e-9;
@@ -108,27 +108,22 @@ impl Course {
     /// The motion stretch by stretch, each as the equations say or with something held by friction, and why it ends.
     pub(super) fn pieces(
         &self,
-        system: &System,
+        solver: &Solver,
         equations: &StateEquations,
         start: Vec<f64>,
         options: &Options,
+        recorded: usize,
     ) -> Result<(Vec<Piece>, End), TrajectoryError> {
-        let moving = Rates {
-            states: equations.states.to_vec(),
-            right: equations.right.to_vec(),
-        };
-        let events = self.section.as_ref();
-        let events = events.map_or(vec![], |section| section.events(&moving));
         let (mut pieces, mut regimes) = (Vec::new(), Regimes::new());
         let (mut from, mut state) = (0.0, start);
         let (mut idle, mut holds) = (0, 0);
         let reason = loop {
             let piece = match regimes.iter().all(|(_, regime)| *regime == Regime::Typed) {
                 true => Piece {
-                    recorded: events.len(),
+                    recorded,
                     layout: None,
                     from,
-                    path: system.solve(from, &state, self.duration, &events, options)?,
+                    path: solver.solve(from, &state, self.duration)?,
                 },
                 false => match self.stretch(equations, &regimes, from, &mut state, options)? {
                     Some(piece) => piece,

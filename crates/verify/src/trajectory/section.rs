@@ -192,28 +192,30 @@ impl Trajectory {
         let count = self.course.coordinates.len();
         let (from, end) = (self.course.after.min(self.end()), self.end());
         let mut extremes = vec![[f64::INFINITY, f64::NEG_INFINITY]; count];
-        let mut before: Option<(f64, Vec<f64>)> = None;
-        for piece in 0..=PIECES {
-            let time = from + (end - from) * f64::from(piece) / f64::from(PIECES);
-            let Some(state) = self.at(time) else { continue };
-            for (index, [least, greatest]) in extremes.iter_mut().enumerate() {
-                let mut take = |value: f64| {
-                    *least = least.min(value);
-                    *greatest = greatest.max(value);
-                };
-                take(state[index]);
+        let times = (0..=PIECES).map(|piece| from + (end - from) * f64::from(piece) / f64::from(PIECES));
+        let sampled = self.sample(times.collect(), 2 * count);
+        for (index, [least, greatest]) in extremes.iter_mut().enumerate() {
+            let mut take = |value: f64| {
+                *least = least.min(value);
+                *greatest = greatest.max(value);
+            };
+            let (places, velocities) = (&sampled.columns[index], &sampled.columns[count + index]);
+            for (number, place) in places.iter().enumerate() {
+                take(*place);
                 // Between two signs of the velocity stands a turning point.
-                if let Some((earlier, former)) = &before
-                    && former[count + index] * state[count + index] < 0.0
-                {
-                    let velocity = |time: f64| self.at(time).map_or(f64::NAN, |state| state[count + index]);
-                    let turning = crate::numeric::ode::root::find_root(velocity, *earlier, time).ok();
-                    if let Some(state) = turning.and_then(|time| self.at(time)) {
-                        take(state[index]);
-                    }
+                let Some(before) = number
+                    .checked_sub(1)
+                    .filter(|before| velocities[*before] * velocities[number] < 0.0)
+                else {
+                    continue;
+                };
+                let velocity = |time: f64| self.state_at(time, count + index).unwrap_or(f64::NAN);
+                let [earlier, time] = [sampled.times[before], sampled.times[number]];
+                let turning = crate::numeric::ode::root::find_root(velocity, earlier, time).ok();
+                if let Some(place) = turning.and_then(|time| self.state_at(time, index)) {
+                    take(place);
                 }
             }
-            before = Some((time, state));
         }
         extremes
     }

@@ -3,10 +3,10 @@
 //! In: a [`Course`] and the values of some of its names. Out: a [`SweptMotion`] each, in their order, whatever the number of threads; where
 //! somebody asks to stop, those that were begun. With a [`Section`](super::Section) once a period, the points of a bifurcation diagram.
 
-use super::{Course, Crossing, TrajectoryError};
+use super::{Accounted, Course, Crossing, TrajectoryError};
 use crate::parallel::each;
 use crate::symbol::Symbol;
-use crate::system::End;
+use crate::system::{End, Integrator};
 
 /// What one of many motions leaves behind.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,10 +50,7 @@ pub fn sweep(
     grid: &[Vec<f64>],
     progress: impl Fn() + Sync,
 ) -> Result<Vec<SweptMotion>, (usize, TrajectoryError)> {
-    let one = |&(number, values): &(usize, &Vec<f64>)| {
-        if course.interrupt.is_requested() {
-            return Ok(None);
-        }
+    let at = |values: &[f64]| {
         let mut course = course.clone();
         for (name, value) in names.iter().zip(values) {
             match course.rates.states.iter().position(|state| state == name) {
@@ -63,8 +60,18 @@ pub fn sweep(
                 }
             }
         }
+        course
+    };
+    // The equations are made ready once, if they can be, and take other numbers for each motion.
+    let ready = grid.first().and_then(|first| at(first).ready(Integrator::Taylor).ok());
+    let one = |&(number, values): &(usize, &Vec<f64>)| {
+        if course.interrupt.is_requested() {
+            return Ok(None);
+        }
         let after = course.after;
-        let motion = course.follow().map_err(|error| (number, error))?;
+        let motion = at(values)
+            .followed(ready.as_ref(), Accounted::No)
+            .map_err(|error| (number, error))?;
         progress();
         // One that was cut off before it counts has nothing to show.
         if motion.reason() == End::Interrupted && motion.end() < after {

@@ -4,7 +4,7 @@
 //! computed passes what is printed; the ends of the range that reproduces are found by bisection. The first such range is taken.
 
 use super::claim::Unknown;
-use crate::numeric::ode::root::find_root;
+use crate::numeric::ode::root::{Until, bisect, find_root};
 
 /// The values of an unknown that a claim asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,15 +109,8 @@ fn range_about(value: f64, neighbours: [f64; 2], try_value: &dyn Fn(f64) -> Tria
                 return inside;
             }
         }
-        for _ in 0..60 {
-            let middle = 0.5 * (inside + outside);
-            if reproduces(middle) {
-                inside = middle;
-            } else {
-                outside = middle;
-            }
-        }
-        inside
+        let [last, _] = bisect(reproduces, inside, outside, Until::Halvings(60));
+        last
     };
     let [low, high] = neighbours;
     let (low, high) = (end(low.min(high)), end(low.max(high)));

@@ -30,6 +30,7 @@ use std::collections::BTreeMap;
 
 use crate::expr::{EvaluationError, Expr, ExprError, Function, Node, ParseError, parse_expression};
 use crate::interrupt::Interrupt;
+use crate::numeric::ode::root::{Until, bisect};
 use crate::series::recurrence::RecurrenceError;
 use crate::symbol::Symbol;
 
@@ -266,14 +267,7 @@ fn end_of_range(length: f64, is_within: impl Fn(f64) -> bool) -> Option<f64> {
     if is_within(length) {
         return None;
     }
-    let (mut within, mut beyond) = (0.0, length);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (within + beyond);
-        match is_within(middle) {
-            true => within = middle,
-            false => beyond = middle,
-        }
-    }
+    let [within, _] = bisect(is_within, 0.0, length, Until::Halvings(HALVINGS));
     Some(within)
 }
 

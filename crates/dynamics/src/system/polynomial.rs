@@ -1,5 +1,7 @@
 //! Polynomials of a step: value, and the roots of the series of an event.
 
+use crate::numeric::ode::root::{Until, bisect};
+
 /// The value at `s`.
 pub(super) fn value(series: &[f64], s: f64) -> f64 {
     series.iter().rev().fold(0.0, |sum, coefficient| sum * s + coefficient)
@@ -98,18 +100,9 @@ pub(super) fn first_root(series: &[f64], from: f64, to: f64) -> Option<(f64, boo
         if at_low == 0.0 || (at_high != 0.0 && at_low.signum() == at_high.signum()) {
             continue;
         }
-        let (mut good, mut bad) = (low, high);
-        while bad - good > f64::EPSILON * high.abs() {
-            let middle = 0.5 * (good + bad);
-            if middle <= good || middle >= bad {
-                break;
-            }
-            match value(series, middle).signum() == at_low.signum() {
-                true => good = middle,
-                false => bad = middle,
-            }
-        }
-        return Some((bad, at_low < 0.0));
+        let before = |at: f64| value(series, at).signum() == at_low.signum();
+        let [_, root] = bisect(before, low, high, Until::Width(f64::EPSILON * high.abs()));
+        return Some((root, at_low < 0.0));
     }
     None
 }

@@ -20,6 +20,7 @@ use super::objective::Objective;
 use super::question::Question;
 use crate::genetic::{Space, generator};
 use crate::impact::Parameter;
+use crate::numeric::ode::root::{Until, bisect};
 
 /// A design this much worse, in parts, is as good for an engineer.
 pub const WITHIN: f64 = 0.01;
@@ -276,16 +277,8 @@ impl Probe<'_> {
             let mut last = value;
             for next in self.way(value, limit) {
                 if good(next).is_none() {
-                    // The place between by halving.
-                    let (mut inside, mut outside) = (last, next);
                     let halvings = if self.fewer > 1 { 12 } else { 30 };
-                    for _ in 0..halvings {
-                        let middle = 0.5 * (inside + outside);
-                        match good(middle) {
-                            Some(_) => inside = middle,
-                            None => outside = middle,
-                        }
-                    }
+                    let [inside, _] = bisect(|value| good(value).is_some(), last, next, Until::Halvings(halvings));
                     return inside;
                 }
                 last = next;

@@ -21,6 +21,7 @@ use num_traits::{Signed, ToPrimitive};
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::expr::{CompiledFunction, Expr, Function, Node};
+use crate::numeric::ode::polynomial::real_zeros;
 use crate::numeric::ode::root::find_root;
 use crate::symbol::Symbol;
 
@@ -266,7 +267,10 @@ impl Part {
         };
         let (low, high) = (grid[0], grid[grid.len() - 1]);
         let mut places = match &self.polynomial {
-            Some(coefficients) => polynomial_zeros(&derivative(coefficients), low, high),
+            Some(coefficients) => {
+                let zeros = real_zeros(&derivative(coefficients), [low, high]).into_iter();
+                zeros.map(|zero| zero.place).collect()
+            }
             None => zeros(&|x| self.slope.call(&[x]), grid),
         };
         // Between two neighbouring stationary points there is at most one zero.
@@ -345,24 +349,6 @@ fn derivative(coefficients: &[f64]) -> Vec<f64> {
         .skip(1)
         .map(|(k, c)| k as f64 * c)
         .collect()
-}
-
-/// All real zeros of a polynomial in an interval: between two neighbouring zeros of its derivative there is at most one.
-fn polynomial_zeros(coefficients: &[f64], low: f64, high: f64) -> Vec<f64> {
-    let mut chain = vec![coefficients.to_vec()];
-    while chain.last().is_some_and(|last| last.len() > 2) {
-        chain.extend(chain.last().map(|last| derivative(last)));
-    }
-    let mut separators = Vec::new();
-    for polynomial in chain.iter().rev() {
-        let value = |x: f64| polynomial.iter().rev().fold(0.0, |sum, c| sum * x + c);
-        let mut grid = vec![low];
-        grid.extend(separators);
-        grid.push(high);
-        separators = zeros(&value, &grid);
-        separators.dedup();
-    }
-    separators
 }
 
 #[cfg(test)]

@@ -17,6 +17,7 @@ use super::features::Features;
 use crate::exact::Rational;
 use crate::expr::{CompiledFunction, Expr, Function, Node};
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
+use crate::numeric::ode::root::{Until, bisect};
 use crate::series::taylor::taylor;
 use crate::symbol::Symbol;
 
@@ -280,15 +281,7 @@ impl Force {
         if let Some(outside) = samples.iter().copied().find(|&y| !defined(y)) {
             let inside = samples.iter().copied().filter(|&y| defined(y));
             let nearest = inside.min_by(|a, b| (a - outside).abs().total_cmp(&(b - outside).abs()));
-            let (mut inside, mut outside) = (nearest.unwrap_or(outside), outside);
-            for _ in 0..60 {
-                let middle = 0.5 * (inside + outside);
-                if defined(middle) {
-                    inside = middle;
-                } else {
-                    outside = middle;
-                }
-            }
+            let [_, outside] = bisect(defined, nearest.unwrap_or(outside), outside, Until::Halvings(60));
             return Some(self.equilibrium() + outside);
         }
         if self.of.features().is_empty() {

@@ -15,7 +15,7 @@ use super::force::Force;
 use super::passage::{passage_at, passages, pushes_away};
 use crate::decimal::significant;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
-use crate::numeric::ode::root::find_root;
+use crate::numeric::ode::root::{Until, bisect, find_root};
 use crate::symbol::Symbol;
 
 /// Where a well ends on one side.
@@ -429,17 +429,8 @@ fn levels_off(force: &Force, side: f64, unit: f64, weakened: f64) -> Option<Wall
 
 /// Where a force ends between a distance at which it has a value and one at which it has none, from outside.
 pub(super) fn end_of_force(pull: &dyn Fn(f64) -> f64, inside: f64, outside: f64) -> f64 {
-    const HALVINGS: usize = 60;
-    let (mut inside, mut outside) = (inside, outside);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (inside + outside);
-        if pull(middle).is_finite() {
-            inside = middle;
-        } else {
-            outside = middle;
-        }
-    }
-    outside
+    let [_, end] = bisect(|size| pull(size).is_finite(), inside, outside, Until::Halvings(60));
+    end
 }
 
 /// Where the force turns its sign between two distances, and whether through zero; `None` where it has only died away.

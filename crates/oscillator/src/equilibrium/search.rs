@@ -7,6 +7,7 @@
 //! A polynomial changes its sign at most once between two neighbouring zeros of its derivative, so its zeros follow one
 //! derivative after the other. Any other force is walked along a grid of equal ratios, outwards from zero.
 
+use crate::numeric::ode::polynomial::real_zeros;
 use crate::numeric::ode::root::{find_minimum, find_root};
 
 /// A zero of the force at which it changes its sign.
@@ -203,39 +204,15 @@ fn crossing(value: &dyn Fn(f64) -> f64, from: f64, to: f64) -> Option<f64> {
 
 /// The zeros at which a polynomial changes its sign, from its coefficients, lowest first.
 pub(super) fn polynomial_zeros(coefficients: &[f64]) -> Vec<Zero> {
-    let Some(degree) = coefficients.iter().rposition(|coefficient| *coefficient != 0.0) else {
-        return vec![];
-    };
-    // Fujiwara's bound: 2 max |c_k/c_n|^(1/(n-k)).
-    let leading = coefficients[degree];
-    let bound = |k: usize| (coefficients[k] / leading).abs().powf(1.0 / (degree - k) as f64);
-    let farthest = 2.0 * (0..degree).map(bound).fold(0.0, f64::max);
-    let mut derivatives = vec![coefficients[..=degree].to_vec()];
-    for order in 0..degree {
-        let slope = derivatives[order].iter().enumerate().skip(1);
-        let slope = slope.map(|(power, coefficient)| power as f64 * coefficient).collect();
-        derivatives.push(slope);
-    }
-    let mut places: Vec<f64> = vec![];
-    for polynomial in derivatives.iter().rev() {
-        let value = |x: f64| polynomial.iter().rev().fold(0.0, |sum, c| sum * x + c);
-        let size = |x: f64| polynomial.iter().rev().fold(0.0, |sum, c| sum * x.abs() + c.abs());
-        let ends = std::iter::once(-farthest)
-            .chain(places.iter().copied())
-            .chain([farthest]);
-        // Where the value is rounding, two zeros meet, and the sign does not change.
-        let clear = ends.filter(|&x| value(x).abs() > 1e-14 * size(x) && value(x) != 0.0);
-        let clear: Vec<f64> = clear.collect();
-        let crossings = clear
-            .windows(2)
-            .filter(|pair| value(pair[0]).signum() != value(pair[1]).signum());
-        places = crossings
-            .filter_map(|pair| crossing(&value, pair[0], pair[1]))
-            .collect();
-    }
-    let value = |x: f64| coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c);
+    let found = real_zeros(coefficients, [f64::NEG_INFINITY, f64::INFINITY]);
+    let places: Vec<f64> = found
+        .iter()
+        .filter(|zero| zero.crosses)
+        .map(|zero| zero.place)
+        .collect();
     // Beyond the last zero the sign is that of the leading coefficient, and it alternates inwards.
-    let outermost = value(2.0 * farthest) > 0.0;
+    let leading = coefficients.iter().rfind(|coefficient| **coefficient != 0.0);
+    let outermost = leading.is_some_and(|leading| *leading > 0.0);
     let count = places.len();
     let zero = |(index, &position): (usize, &f64)| Zero {
         position,

@@ -42,6 +42,7 @@ use crate::exact::rational::ratio;
 use crate::exact::{Doubles, POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
 use crate::numeric::ode::energy;
+use crate::numeric::ode::newton::{Progress, newton};
 use crate::numeric::ode::quadrature::integrate_smooth;
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
@@ -801,10 +802,10 @@ impl Balance {
     }
 
     /// The solution `[omega^2, a_k...]` near a start.
-    fn newton(&self, mut unknowns: DVector<f64>, amplitude: f64) -> Option<DVector<f64>> {
+    fn newton(&self, start: DVector<f64>, amplitude: f64) -> Option<DVector<f64>> {
         const ITERATIONS: usize = 40;
         let count = self.harmonics.len();
-        for _ in 0..ITERATIONS {
+        let equations = |unknowns: &DVector<f64>| {
             let squared = unknowns[0];
             let omega = squared.sqrt();
             let mut residual = DVector::zeros(count + 1);
@@ -838,16 +839,18 @@ impl Balance {
             for column in 0..count {
                 jacobian[(count, column + 1)] = 1.0;
             }
-            let change = jacobian.lu().solve(&residual)?;
-            unknowns -= &change;
+            Some((residual, jacobian))
+        };
+        let judged = |unknowns: &DVector<f64>, change: &DVector<f64>| {
             if !unknowns.iter().all(|value| value.is_finite()) || unknowns[0] <= 0.0 {
-                return None;
+                return Progress::Lost;
             }
             let scale = unknowns.rows(1, count).amax();
-            if change[0].abs() <= 1e-12 * unknowns[0] && change.rows(1, count).amax() <= 1e-12 * scale {
-                return Some(unknowns);
+            match change[0].abs() <= 1e-12 * unknowns[0] && change.rows(1, count).amax() <= 1e-12 * scale {
+                true => Progress::Settled,
+                false => Progress::Going,
             }
-        }
-        None
+        };
+        newton(start, ITERATIONS, equations, judged)
     }
 }

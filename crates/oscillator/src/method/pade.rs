@@ -23,7 +23,6 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::DMatrix;
 use num_traits::{One, Zero};
 
 use super::power_series::{CONSTANT, PowerSeries, Resummed, STOPPED, TOO_LONG, has_values, scaled};
@@ -34,6 +33,7 @@ use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::exact::{Integer, Polynomial, Rational};
 use crate::expr::Expr;
+use crate::numeric::ode::polynomial::real_zeros;
 use crate::oscillator::Oscillator;
 use crate::series::hermite_pade::by_primes::exact;
 use crate::solution::{Degrees, Method, Note, Solution, note::Poles};
@@ -363,32 +363,10 @@ fn in_one_variable(polynomial: &Polynomial) -> Option<(Monomial, Vec<Rational>)>
     Some((unit, coefficients))
 }
 
-/// Real roots by the eigenvalues of the companion matrix.
+/// The real roots, each once.
 fn real_roots(coefficients: &[f64]) -> Vec<f64> {
-    let degree = coefficients.len().saturating_sub(1);
-    let Some(&leading) = coefficients.last().filter(|leading| degree > 0 && **leading != 0.0) else {
-        return vec![];
-    };
-    // In units of the mean size of the roots, in which no coefficient is out of proportion.
-    let unit = match degree > LARGEST_BY_FRACTIONS {
-        true => (coefficients[0] / leading).abs().powf(1.0 / degree as f64),
-        false => 1.0,
-    };
-    if !unit.is_normal() {
-        return vec![];
-    }
-    let companion = DMatrix::from_fn(degree, degree, |row, column| {
-        if column + 1 == degree {
-            -coefficients[row] / leading * unit.powi(row as i32 - degree as i32)
-        } else {
-            f64::from(u8::from(row == column + 1))
-        }
-    });
-    let eigenvalues = companion.complex_eigenvalues();
-    let real = eigenvalues
-        .iter()
-        .filter(|value| value.im.abs() < 1e-9 * (1.0 + value.re.abs()));
-    real.map(|value| value.re * unit).collect()
+    let zeros = real_zeros(coefficients, [f64::NEG_INFINITY, f64::INFINITY]);
+    zeros.into_iter().map(|zero| zero.place).collect()
 }
 
 #[cfg(test)]

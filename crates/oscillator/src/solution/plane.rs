@@ -22,6 +22,7 @@ use num_integer::Integer as _;
 use super::Solution;
 use super::response::Plane;
 use crate::exact::Polynomial;
+use crate::numeric::ode::polynomial::real_zeros;
 use crate::numeric::ode::root::find_root;
 use crate::symbol::Symbol;
 
@@ -516,78 +517,13 @@ fn amplitudes(relation: &[f64]) -> Vec<f64> {
     }
 }
 
-/// The positive roots of a polynomial, lowest coefficient first: between the zeros of its slope.
+/// The positive roots of a polynomial where it changes its sign, lowest coefficient first.
 fn positive_roots(coefficients: &[f64]) -> Vec<f64> {
-    let length = coefficients
-        .iter()
-        .rposition(|value| *value != 0.0)
-        .map_or(0, |last| last + 1);
-    // The polynomial and its derivatives down to the linear one: each has its roots between those of the next.
-    let mut derivatives = vec![coefficients[..length].to_vec()];
-    while let Some(last) = derivatives.last().filter(|last| last.len() > 2) {
-        derivatives.push((1..last.len()).map(|k| k as f64 * last[k]).collect());
-    }
-    let mut roots: Vec<f64> = vec![];
-    for polynomial in derivatives.iter().rev() {
-        roots = roots_between(polynomial, &roots);
-    }
-    roots
-}
-
-/// The positive roots of a polynomial where it changes its sign, the extremes given.
-fn roots_between(coefficients: &[f64], extremes: &[f64]) -> Vec<f64> {
-    let Some((leading, rest)) = coefficients.split_last().filter(|(_, rest)| !rest.is_empty()) else {
-        return vec![];
-    };
-    let value = |x: f64| coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c);
-    // Cauchy's bound.
-    let bound = 1.0 + rest.iter().map(|c| (c / leading).abs()).fold(0.0, f64::max);
-    if !bound.is_finite() {
-        return vec![];
-    }
-    let places: Vec<f64> = [0.0]
-        .into_iter()
-        .chain(extremes.iter().copied())
-        .chain([bound])
-        .collect();
-    let between = places.windows(2).filter(|pair| value(pair[0]) * value(pair[1]) < 0.0);
-    between
-        .filter_map(|pair| find_root(value, pair[0], pair[1]).ok())
-        .collect()
+    let zeros = real_zeros(coefficients, [0.0, f64::INFINITY]).into_iter();
+    zeros.filter(|zero| zero.crosses).map(|zero| zero.place).collect()
 }
 
 /// `u` and `v` of a radius and an angle.
 fn on_circle(radius: f64, angle: f64) -> [f64; 2] {
     [radius * angle.cos(), -radius * angle.sin()]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::positive_roots;
-
-    /// `(x - 1)(x - 2)(x - 3)(x + 4)`, and `x^150 = 2`: the derivatives of a high degree are many.
-    #[test]
-    fn positive_roots_lie_between_those_of_the_slope() {
-        let roots = positive_roots(&[-24.0, 38.0, -13.0, -2.0, 1.0, 0.0]);
-        assert_eq!(roots.len(), 3);
-        assert!(
-            roots
-                .iter()
-                .zip(1..)
-                .all(|(root, k)| (root - f64::from(k)).abs() < 1e-9),
-            "{roots:?}"
-        );
-        let mut high = vec![0.0; 151];
-        (high[0], high[150]) = (-2.0, 1.0);
-        let roots = positive_roots(&high);
-        assert!(
-            matches!(roots.as_slice(), [root] if (root.powi(150) - 2.0).abs() < 1e-9),
-            "{roots:?}"
-        );
-        assert!(
-            positive_roots(&[1.0, 1.0]).is_empty()
-                && positive_roots(&[0.0]).is_empty()
-                && positive_roots(&[]).is_empty()
-        );
-    }
 }

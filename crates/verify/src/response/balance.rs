@@ -17,11 +17,14 @@
 //! Where nothing drives the motion its frequency is an unknown, and when it begins is free: it begins where the first sine is zero,
 //! and the frequency takes the place of b_1 among the unknowns.
 
+use std::cell::Cell;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::driven::Driven;
 
 use crate::numeric::harmonics::{Harmonics, Transform};
+use crate::numeric::ode::newton::{Progress, newton};
 use crate::numeric::ode::quadrature::nodes_and_weights;
 use crate::numeric::ode::root::find_root;
 
@@ -361,27 +364,30 @@ impl<'a> Balance<'a> {
     /// Newton's method for the coefficients at a fixed parameter; nothing where it does not settle.
     pub fn solve(&self, guess: &DVector<f64>, parameter: f64) -> Option<DVector<f64>> {
         const MOST: usize = 40;
-        let mut coefficients = guess.clone();
-        for _ in 0..MOST {
-            let linear = self.linearised(&coefficients, parameter)?;
-            let step = linear.jacobian.lu().solve(&linear.residual)?;
-            coefficients -= &step;
+        let vanishes = Cell::new(false);
+        let equations = |coefficients: &DVector<f64>| {
+            let linear = self.linearised(coefficients, parameter)?;
+            vanishes.set(linear.residual.norm() <= 1e-14 * linear.scale);
+            Some((linear.residual, linear.jacobian))
+        };
+        let judged = |coefficients: &DVector<f64>, step: &DVector<f64>| {
             if !coefficients.norm().is_finite() {
-                return None;
+                return Progress::Lost;
             }
             let settled = match self.frequency_place() {
                 None => step.norm() <= CONVERGED * coefficients.norm(),
                 // A frequency is measured in itself.
                 Some(place) => {
-                    let [size, moved] = [&coefficients, &step].map(|vector| self.extent(vector).hypot(vector[0]));
+                    let [size, moved] = [coefficients, step].map(|vector| self.extent(vector).hypot(vector[0]));
                     moved <= CONVERGED * size && step[place].abs() <= CONVERGED * coefficients[place].abs()
                 }
             };
-            if settled || linear.residual.norm() <= 1e-14 * linear.scale {
-                return Some(coefficients);
+            match settled || vanishes.get() {
+                true => Progress::Settled,
+                false => Progress::Going,
             }
-        }
-        None
+        };
+        newton(guess.clone(), MOST, equations, judged)
     }
 
     /// Position and velocity at phase zero.

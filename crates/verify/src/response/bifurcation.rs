@@ -16,7 +16,7 @@
 use super::balance::Balance;
 use super::continuation::Node;
 use super::stability::Floquet;
-use crate::numeric::ode::root::find_root;
+use crate::numeric::ode::root::{Until, find_root, try_bisect};
 
 /// What happens at a point of a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -116,7 +116,7 @@ pub fn between(
         };
         let part = match kind {
             // A sign alone has no root but by halving.
-            BranchPoint => halved(value),
+            BranchPoint => Some(halved(value)),
             _ => find_root(value, 0.0, 1.0).ok(),
         };
         // Where branches cross Newton's method may not settle: beside it is near enough.
@@ -136,22 +136,15 @@ pub fn between(
 }
 
 /// Where a sign changes between 0 and 1, to 1e-9.
-fn halved(mut value: impl FnMut(f64) -> f64) -> Option<f64> {
-    const HALVINGS: usize = 30;
-    let (mut low, mut high) = (0.0, 1.0);
-    let before = value(low);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        let there = value(middle);
-        if there.is_nan() {
-            // The branch itself cannot be told from the other one here: close enough.
-            break;
-        }
-        if there * before > 0.0 {
-            low = middle
-        } else {
-            high = middle
-        }
+fn halved(mut value: impl FnMut(f64) -> f64) -> f64 {
+    let before = value(0.0);
+    let is_before = |part: f64| match value(part) {
+        // The branch itself cannot be told from the other one here: close enough.
+        there if there.is_nan() => Err(part),
+        there => Ok(there * before > 0.0),
+    };
+    match try_bisect(is_before, 0.0, 1.0, Until::Halvings(30)) {
+        Ok([low, high]) => 0.5 * (low + high),
+        Err(part) => part,
     }
-    Some(0.5 * (low + high))
 }

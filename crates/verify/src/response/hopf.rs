@@ -11,6 +11,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::driven::Driven;
+use crate::numeric::ode::newton::{Progress, newton};
 
 /// A place of rest that small motions neither leave nor approach.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,9 +32,8 @@ pub fn near(driven: &Driven, position: f64, parameter: f64, [size, range]: [f64;
     const DIFFERENCE: f64 = 1e-6;
     let at = |place: Vector2<f64>| [place[0], 0.0, 0.0, place[1]];
     let lengths = Vector2::new(size, range);
-    let mut place = Vector2::new(position, parameter);
-    for _ in 0..MOST {
-        let [by_position, by_velocity, by_parameter] = driven.slopes(&at(place));
+    let equations = |place: &Vector2<f64>| {
+        let [by_position, by_velocity, by_parameter] = driven.slopes(&at(*place));
         let damping_slope = |index: usize| {
             let mut step = Vector2::zeros();
             step[index] = DIFFERENCE * lengths[index];
@@ -41,21 +41,18 @@ pub fn near(driven: &Driven, position: f64, parameter: f64, [size, range]: [f64;
             (after - before) / (2.0 * step[index])
         };
         let matrix = Matrix2::new(by_position, by_parameter, damping_slope(0), damping_slope(1));
-        let step = matrix
-            .lu()
-            .solve(&Vector2::new(driven.force(&at(place)), by_velocity))?;
-        place -= step;
-        if !(place[0] + place[1]).is_finite() {
-            return None;
-        }
-        if step[0].abs() <= SETTLED * size && step[1].abs() <= SETTLED * range {
-            let stiffness = driven.slopes(&at(place))[0];
-            return (stiffness > 0.0).then_some(Birth {
-                position: place[0],
-                parameter: place[1],
-                frequency: stiffness.sqrt(),
-            });
-        }
-    }
-    None
+        Some((Vector2::new(driven.force(&at(*place)), by_velocity), matrix))
+    };
+    let judged = |place: &Vector2<f64>, step: &Vector2<f64>| match step[0].abs() <= SETTLED * size {
+        _ if !(place[0] + place[1]).is_finite() => Progress::Lost,
+        true if step[1].abs() <= SETTLED * range => Progress::Settled,
+        _ => Progress::Going,
+    };
+    let place = newton(Vector2::new(position, parameter), MOST, equations, judged)?;
+    let stiffness = driven.slopes(&at(place))[0];
+    (stiffness > 0.0).then_some(Birth {
+        position: place[0],
+        parameter: place[1],
+        frequency: stiffness.sqrt(),
+    })
 }

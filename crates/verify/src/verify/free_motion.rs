@@ -9,7 +9,7 @@ use super::VerificationError;
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};
 use crate::numeric::ode;
-use crate::numeric::ode::root::find_root;
+use crate::numeric::ode::root::{Until, bisect, find_root};
 use crate::oscillator::Oscillator;
 use crate::symbol::Symbol;
 use crate::trajectory::{Course, Trajectory};
@@ -173,17 +173,9 @@ impl FreeMotion {
     }
 
     /// When the velocity becomes zero and stays so, between a time at which it moves and one at which it is held.
-    fn begin_of_rest(&self, mut moves: f64, mut held: f64) -> f64 {
-        loop {
-            let middle = 0.5 * (moves + held);
-            if middle <= moves || middle >= held {
-                return held;
-            }
-            match self.at(middle).1 == 0.0 {
-                true => held = middle,
-                false => moves = middle,
-            }
-        }
+    fn begin_of_rest(&self, moves: f64, held: f64) -> f64 {
+        let [_, begin] = bisect(|t| self.at(t).1 != 0.0, moves, held, Until::Width(0.0));
+        begin
     }
 
     /// When the line through the sizes at the turning points, and where it is held, straight on the logarithm, comes down to this

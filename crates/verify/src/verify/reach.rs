@@ -13,6 +13,7 @@ use crate::decimal::significant;
 use crate::expr::Expr;
 use crate::method::numbers::Known;
 use crate::method::table::{Entry, Motion};
+use crate::numeric::ode::root::{Until, bisect};
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
@@ -307,15 +308,8 @@ impl Follow<'_> {
 
     /// The crossing between a good point and a bad one, by bisection.
     fn crossing(&self, good: (f64, f64), bad: (f64, f64)) -> f64 {
-        const HALVINGS: usize = 14;
-        let (mut low, mut high) = (good.0, bad.0);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            match (self.error)(middle) {
-                Some(error) if error.abs() <= self.tolerance => low = middle,
-                _ => high = middle,
-            }
-        }
-        low
+        let is_good = |size: f64| (self.error)(size).is_some_and(|error| error.abs() <= self.tolerance);
+        let [last, _] = bisect(is_good, good.0, bad.0, Until::Halvings(14));
+        last
     }
 }

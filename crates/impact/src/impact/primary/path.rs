@@ -1,6 +1,7 @@
 //! The states of both bodies at any time: flights in the time itself, contacts in the time s in which they are analytic.
 
 use super::super::model::Side;
+use crate::numeric::ode::root::{Until, try_bisect};
 use crate::system::Path;
 
 /// Angle and velocity of the pendulum, displacement and speed of the main mass.
@@ -65,22 +66,13 @@ impl Piece {
 /// s at this t: the last of its states grows with it.
 fn own_time(path: &Path, time: f64) -> Option<f64> {
     let clock = |s: f64| path.at(s).map(|state| state[4]);
-    let (mut low, mut high) = (0.0, path.end());
-    if time >= clock(high)? {
-        return Some(high);
+    let end = path.end();
+    if time >= clock(end)? {
+        return Some(end);
     }
-    for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if clock(middle)? < time {
-            low = middle
-        } else {
-            high = middle
-        }
-    }
-    Some(low)
+    let is_before = |s: f64| clock(s).map(|t| t < time).ok_or(());
+    let [last, _] = try_bisect(is_before, 0.0, end, Until::Halvings(200)).ok()?;
+    Some(last)
 }
 
 /// All pieces, in order.

@@ -11,7 +11,8 @@
 //! - [`integrate_first_order`] follows y' = f(t, y) with any number of values.
 //! - [`Event`] is a function of time and values whose zero matters: [`Event::record`], [`Event::stop`], [`Event::switch`].
 //! - [`energy`] finds where a conservative motion turns and how long it takes on the way;
-//! - [`quadrature`] integrates a smooth function, [`root`] finds roots and minima.
+//! - [`quadrature`] integrates a smooth function, [`root`] finds roots and minima, [`polynomial`] the zeros of a polynomial,
+//!   [`newton`] the solution of several equations.
 //!
 //! ```
 //! # use lindstedt_numeric as lindstedt;
@@ -37,6 +38,8 @@
 pub mod energy;
 mod event;
 mod integrate;
+pub mod newton;
+pub mod polynomial;
 pub mod quadrature;
 pub mod root;
 mod sample;

@@ -1,6 +1,7 @@
-//! Roots and minima of a function of one real variable, from a bracket.
+//! Roots and minima of a function of one real variable, and the place where a property ends, from a bracket.
 //!
 //! In: a continuous function and an interval. Out: the point, to the last bits of a double.
+//! Where there is no value but only a yes or a no, [`bisect`] halves the interval.
 //!
 //! [`find_root`]: Chandrupatla's hybrid of inverse quadratic interpolation and bisection (T. R. Chandrupatla, *Adv.
 //! Eng. Software* 28 (1997) 145): the interpolation is taken only where the three points lie on a curve that is
@@ -15,6 +16,7 @@
 //! # Ok::<(), lindstedt::numeric::ode::root::RootError>(())
 //! ```
 
+use std::convert::Infallible;
 use thiserror::Error;
 
 /// Why no root was returned.
@@ -101,6 +103,58 @@ pub fn find_root(mut function: impl FnMut(f64) -> f64, a: f64, b: f64) -> Result
         };
         let margin = (resolution / width).min(0.5);
         fraction = fraction.clamp(margin, 1.0 - margin);
+    }
+}
+
+/// The width at which a bisection ends; neighbouring doubles end it in any case.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Until {
+    /// The interval has been halved so many times.
+    Halvings(u32),
+    /// The interval is no wider than this.
+    Width(f64),
+}
+
+/// The last place seen at which a property holds and the first seen at which it does not, by halving the interval between
+/// one where it holds and one where it does not (in either order). The ends themselves are not tried.
+///
+/// ```
+/// # use lindstedt_numeric as lindstedt;
+/// use lindstedt::numeric::ode::root::{Until, bisect};
+///
+/// let [defined, undefined] = bisect(|x: f64| (2.0 - x).sqrt().is_finite(), 0.0, 3.0, Until::Width(0.0));
+/// assert_eq!([defined, undefined], [2.0, 2.0_f64.next_up()]);
+/// ```
+pub fn bisect(mut holds: impl FnMut(f64) -> bool, inside: f64, outside: f64, until: Until) -> [f64; 2] {
+    let Ok(ends) = try_bisect(|x| Ok::<_, Infallible>(holds(x)), inside, outside, until);
+    ends
+}
+
+/// The bisection of a property that cannot be told everywhere.
+///
+/// # Errors
+/// The first error of the property.
+pub fn try_bisect<E>(
+    mut holds: impl FnMut(f64) -> Result<bool, E>,
+    mut inside: f64,
+    mut outside: f64,
+    until: Until,
+) -> Result<[f64; 2], E> {
+    let mut halvings = 0;
+    loop {
+        let is_wide = match until {
+            Until::Halvings(most) => halvings < most,
+            Until::Width(width) => (outside - inside).abs() > width,
+        };
+        let middle = 0.5 * (inside + outside);
+        if !is_wide || middle == inside || middle == outside {
+            return Ok([inside, outside]);
+        }
+        match holds(middle)? {
+            true => inside = middle,
+            false => outside = middle,
+        }
+        halvings += 1;
     }
 }
 
@@ -206,6 +260,22 @@ mod tests {
             find_root(|x| x, f64::NEG_INFINITY, 1.0),
             Err(RootError::NonFinite { .. })
         ));
+    }
+
+    #[test]
+    fn a_property_ends_between_neighbours_or_as_early_as_asked() {
+        let below = |x: f64| x < 0.3;
+        assert_eq!(bisect(below, -1.0, 1.0, Until::Width(0.0)), [0.3_f64.next_down(), 0.3]);
+        let above = bisect(|x| !below(x), 1.0, -1.0, Until::Halvings(2000));
+        assert_eq!(above, [0.3, 0.3_f64.next_down()]);
+        assert_eq!(bisect(below, 0.0, 1.0, Until::Halvings(2)), [0.25, 0.5]);
+        assert_eq!(bisect(below, 0.0, 1.0, Until::Width(0.25)), [0.25, 0.5]);
+        assert_eq!(
+            bisect(below, 0.0, f64::INFINITY, Until::Halvings(9)),
+            [0.0, f64::INFINITY]
+        );
+        let told = |x: f64| if x == 0.25 { Err(x) } else { Ok(below(x)) };
+        assert_eq!(try_bisect(told, 0.0, 1.0, Until::Width(0.0)), Err(0.25));
     }
 
     #[test]

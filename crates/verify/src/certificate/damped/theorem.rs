@@ -564,6 +564,7 @@ mod tests {
     use super::*;
     use crate::exact::ratio;
     use crate::expr::parse_expression;
+    use crate::numeric::ode::root::{Until, bisect};
     use crate::{Options, Oscillator, solve};
 
     fn certificate() -> DampedCertificate {
@@ -648,17 +649,8 @@ mod tests {
             const STEP: f64 = 1.0 / 512.0;
             let next = step(state, STEP);
             if state[0] < 0.0 && next[0] >= 0.0 {
-                // The part of the step, by bisection.
-                let (mut low, mut high) = (0.0, STEP);
-                for _ in 0..60 {
-                    let middle = 0.5 * (low + high);
-                    if step(state, middle)[0] < 0.0 {
-                        low = middle
-                    } else {
-                        high = middle
-                    }
-                }
-                crossings.push(t + low);
+                let [part, _] = bisect(|part| step(state, part)[0] < 0.0, 0.0, STEP, Until::Halvings(60));
+                crossings.push(t + part);
             }
             (state, t) = (next, t + STEP);
         }

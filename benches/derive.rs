@@ -23,7 +23,12 @@ fn derivations(criterion: &mut Criterion) {
             Method::LindstedtPoincare,
             40,
         ),
-        ("pendulum to A^20", "x'' + sin(x) = 0", Method::LindstedtPoincare, 20),
+        (
+            "pendulum to A^20",
+            "x'' + sin(x) = 0",
+            Method::LindstedtPoincare,
+            20,
+        ),
         (
             "van der Pol to mu^16",
             "x'' - mu*(1 - x^2)*x' + x = 0",
@@ -59,7 +64,10 @@ fn derivations(criterion: &mut Criterion) {
 
 /// The balance of many harmonics, and the whole table.
 fn methods(criterion: &mut Criterion) {
-    for (name, equation) in [("Duffing", "x'' + x + x^3 = 0"), ("pendulum", "x'' + sin(x) = 0")] {
+    for (name, equation) in [
+        ("Duffing", "x'' + x + x^3 = 0"),
+        ("pendulum", "x'' + sin(x) = 0"),
+    ] {
         let oscillator = Oscillator::parse(equation).expect("an oscillator");
         let options = Options {
             method: Some(Method::HarmonicBalance),

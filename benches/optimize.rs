@@ -1,6 +1,7 @@
 //! Time of a search on one core: `cargo bench --workspace --bench optimize`.
 //!
-//! One design by closed forms, one run of the genetic algorithm of the paper's study (a hundredth of it), and what stands beside the runs.
+//! One design by closed forms, one run of the genetic algorithm of the paper's study (a hundredth
+//! of it), and what stands beside the runs.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use lindstedt::genetic::{generator, search};
@@ -27,7 +28,13 @@ fn benches(criterion: &mut Criterion) {
                 Ok(design) => question.evaluation(&design),
                 Err(_) => lindstedt::genetic::Evaluation::of(f64::INFINITY),
             };
-            search(&space, evaluate, &question.genetic, &mut generator(1, 0), &mut |_| true)
+            search(
+                &space,
+                evaluate,
+                &question.genetic,
+                &mut generator(1, 0),
+                &mut |_| true,
+            )
         });
     });
     slow.bench_function("a study of two runs", |bencher| {

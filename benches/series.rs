@@ -1,4 +1,5 @@
-//! The exact core by itself: numbers by primes and over whole numbers, and symbols. `cargo bench --workspace -- series`.
+//! The exact core by itself: numbers by primes and over whole numbers, and symbols.
+//! `cargo bench --workspace -- series`.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use lindstedt::Symbol;
@@ -32,7 +33,12 @@ fn numbers(criterion: &mut Criterion) {
     let van_der_pol = vec![term(2, 1, integer(4)), term(0, 1, integer(-1))];
     let works = [
         ("Duffing", duffing, Amplitude::Free, [10, 20, 40, 80]),
-        ("van der Pol", van_der_pol, Amplitude::Determined, [8, 16, 32, 64]),
+        (
+            "van der Pol",
+            van_der_pol,
+            Amplitude::Determined,
+            [8, 16, 32, 64],
+        ),
     ];
     for (name, force, amplitude, orders) in works {
         let mut group = criterion.benchmark_group(format!("series: {name}"));
@@ -40,15 +46,20 @@ fn numbers(criterion: &mut Criterion) {
         for order in orders {
             let scheme = scheme(amplitude);
             group.bench_function(BenchmarkId::new("motion", order), |bencher| {
-                bencher.iter(|| expand_numbers(&force, order, &scheme, Extent::Motion).expect("an expansion"));
+                bencher.iter(|| {
+                    expand_numbers(&force, order, &scheme, Extent::Motion).expect("an expansion")
+                });
             });
             group.bench_function(BenchmarkId::new("frequency alone", order), |bencher| {
-                bencher.iter(|| expand_numbers(&force, order, &scheme, Extent::Frequency).expect("an expansion"));
+                bencher.iter(|| {
+                    expand_numbers(&force, order, &scheme, Extent::Frequency).expect("an expansion")
+                });
             });
             // What it was before, and is where an equation has no symmetry.
             if order <= 20 {
                 group.bench_function(BenchmarkId::new("over whole numbers", order), |bencher| {
-                    bencher.iter(|| expand(&Integers, &force, order, &scheme).expect("an expansion"));
+                    bencher
+                        .iter(|| expand(&Integers, &force, order, &scheme).expect("an expansion"));
                 });
             }
         }
@@ -68,7 +79,9 @@ fn symbols(criterion: &mut Criterion) {
     group.sample_size(10);
     for order in [2, 4, 6, 8] {
         group.bench_function(BenchmarkId::new("motion", order), |bencher| {
-            bencher.iter(|| expand_polynomials(&force, order, &scheme, Extent::Motion).expect("an expansion"));
+            bencher.iter(|| {
+                expand_polynomials(&force, order, &scheme, Extent::Motion).expect("an expansion")
+            });
         });
         group.bench_function(BenchmarkId::new("over polynomials", order), |bencher| {
             bencher.iter(|| expand(&ring, &force, order, &scheme).expect("an expansion"));

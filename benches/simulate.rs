@@ -1,14 +1,17 @@
 //! Time of simulations on one core: `cargo bench --workspace --bench simulate`.
 //!
-//! A hundredth of the two workloads of `examples/damper_workloads.rs`, one motion at a time and several at a time, and the
-//! judge for comparison; and a sweep of an equation of one's own.
+//! A hundredth of the two workloads of `examples/damper_workloads.rs`, one motion at a time and
+//! several at a time, and the judge for comparison; and a sweep of an equation of one's own.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use lindstedt::Oscillator;
 use lindstedt::impact::{Integrator, Model, Settings, Start, simulate, simulate_many};
 use lindstedt::trajectory::{Course, sweep};
 
-const REST: Start = Start { x: -1.5, velocity: 0.0 };
+const REST: Start = Start {
+    x: -1.5,
+    velocity: 0.0,
+};
 
 fn conservative() -> (Vec<(Model, Start)>, Settings) {
     let start = |index: u32| Start {
@@ -55,7 +58,8 @@ fn damped() -> (Vec<(Model, Start)>, Settings) {
     (motions, options)
 }
 
-/// The paper's design with zeta = 0.02 and mu/gamma = 0.1, to rest: what a study asks of each of its designs.
+/// The paper's design with zeta = 0.02 and mu/gamma = 0.1, to rest: what a study asks of each of
+/// its designs.
 fn to_rest() -> (Vec<(Model, Start)>, Settings) {
     let (_, options) = damped();
     let model = Model {
@@ -101,12 +105,15 @@ fn workloads(criterion: &mut Criterion) {
     }
 }
 
-/// A pendulum with a hundred dampings, as `lindstedt simulate EQUATION --sweep zeta=0.01:0.2:100` follows it.
+/// A pendulum with a hundred dampings, as `lindstedt simulate EQUATION --sweep zeta=0.01:0.2:100`
+/// follows it.
 fn sweep_of_an_equation(criterion: &mut Criterion) {
     let equation = Oscillator::parse("x'' + 2*zeta*x' + sin(x) = 0").expect("an equation");
     let mut course = Course::of_equation(&equation);
     course.begin("x".into(), -1.5).expect("a state");
-    let dampings: Vec<Vec<f64>> = (0..100).map(|index| vec![0.01 + 0.0019 * f64::from(index)]).collect();
+    let dampings: Vec<Vec<f64>> = (0..100)
+        .map(|index| vec![0.01 + 0.0019 * f64::from(index)])
+        .collect();
     criterion.bench_function("equation, a sweep of 100 motions", |bencher| {
         bencher.iter(|| sweep(&course, &["zeta".into()], &dampings, || ()));
     });

@@ -1,8 +1,10 @@
-//! Two workloads of the damper, timed on one core: what `benches/simulate.rs` measures, with the results to compare.
+//! Two workloads of the damper, timed on one core: what `benches/simulate.rs` measures, with the
+//! results to compare.
 //!
-//! W5: 1000 conservative motions to t = 50. W6: 10 000 damped ones until the energy is below 1e-3. Each one by one, and
-//! then several at a time, which must give the same to the last bit. At last the rest times of the damped ones by closed forms, beside
-//! the integration at the tolerance of the program.
+//! W5: 1000 conservative motions to t = 50. W6: 10 000 damped ones until the energy is below 1e-3.
+//! Each one by one, and then several at a time, which must give the same to the last bit. At last
+//! the rest times of the damped ones by closed forms, beside the integration at the tolerance of
+//! the program.
 
 use std::time::Instant;
 
@@ -37,7 +39,13 @@ fn main() {
                 right: Some(0.05 + 0.5 * f64::from(i) / 10_000.0),
                 ..Model::default()
             };
-            (model, Start { x: -1.5, velocity: 0.0 })
+            (
+                model,
+                Start {
+                    x: -1.5,
+                    velocity: 0.0,
+                },
+            )
         })
         .collect();
     let options = Settings {
@@ -85,7 +93,9 @@ fn measure(name: &str, motions: &[(Model, Start)], options: &Settings) {
     let begin = Instant::now();
     let single: Vec<Simulation> = motions
         .iter()
-        .map(|(model, start)| simulate(model, *start, Integrator::Taylor, options).expect("a motion"))
+        .map(|(model, start)| {
+            simulate(model, *start, Integrator::Taylor, options).expect("a motion")
+        })
         .collect();
     let one_by_one = begin.elapsed().as_secs_f64();
     let begin = Instant::now();
@@ -93,7 +103,9 @@ fn measure(name: &str, motions: &[(Model, Start)], options: &Settings) {
     let together = begin.elapsed().as_secs_f64();
     let impacts: usize = runs.iter().map(|run| run.impacts.len()).sum();
     let steps: usize = runs.iter().map(|run| run.steps).sum();
-    println!("{name}: {together:.4} s ({one_by_one:.4} s one by one), {impacts} impacts, {steps} steps");
+    println!(
+        "{name}: {together:.4} s ({one_by_one:.4} s one by one), {impacts} impacts, {steps} steps"
+    );
     let same = single.iter().zip(&runs).all(|(one, other)| {
         let bits = |run: &Simulation| [run.end_time, run.end_x, run.end_velocity].map(f64::to_bits);
         bits(one) == bits(other) && one.impacts == other.impacts

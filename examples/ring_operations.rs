@@ -1,7 +1,9 @@
-//! How much algebra an order is: the operations on coefficients that the recursion over whole numbers makes for each order, and how
-//! long its coefficients are. `ring_operations W1 20`: W1 Duffing, W2 the pendulum, W3 van der Pol.
+//! How much algebra an order is: the operations on coefficients that the recursion over whole
+//! numbers makes for each order, and how long its coefficients are. `ring_operations W1 20`: W1
+//! Duffing, W2 the pendulum, W3 van der Pol.
 //!
-//! The counts come from a ring that counts and leaves the work to the whole numbers: any ring can stand behind a series.
+//! The counts come from a ring that counts and leaves the work to the whole numbers: any ring can
+//! stand behind a series.
 
 use std::cell::Cell;
 use std::error::Error;
@@ -72,9 +74,14 @@ impl Ring for Counted {
     ) -> Result<(), Indivisible> {
         Integers.divide(elements, divisor)
     }
-    fn reduce<'a>(&self, elements: impl IntoIterator<Item = &'a mut Integer>, denominator: &mut Integer) {
+    fn reduce<'a>(
+        &self,
+        elements: impl IntoIterator<Item = &'a mut Integer>,
+        denominator: &mut Integer,
+    ) {
         let elements: Vec<&mut Integer> = elements.into_iter().collect();
-        self.divisors.set(self.divisors.get() + elements.len() as u64);
+        self.divisors
+            .set(self.divisors.get() + elements.len() as u64);
         Integers.reduce(elements, denominator);
     }
     fn inverse(&self, element: &Integer) -> Option<(Integer, Integer)> {
@@ -88,14 +95,18 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("usage: ring_operations W1|W2|W3 ORDER".into());
     };
     let highest: usize = order.parse()?;
-    println!("order  products     sums  scalings  divisors  digits of a numerator  of the denominator");
+    println!(
+        "order  products     sums  scalings  divisors  digits of a numerator  of the denominator"
+    );
     let mut before = [0; 4];
     for order in 1..=highest {
-        // An expansion to one order more counts what that order needs: the recursion is the same up to there.
+        // An expansion to one order more counts what that order needs: the recursion is the same up
+        // to there.
         let ring = Counted::default();
         let expansion = expanded(&ring, work, order)?;
         let counts = ring.counts();
-        let [products, sums, scalings, divisors] = std::array::from_fn(|k| counts[k] - before[k].min(counts[k]));
+        let [products, sums, scalings, divisors] =
+            std::array::from_fn(|k| counts[k] - before[k].min(counts[k]));
         let last = &expansion.displacement[order];
         let longest = last.numerators().map(Integer::bits).max().unwrap_or(0);
         let denominator = last.mean().1.bits();
@@ -114,12 +125,17 @@ fn digits(bits: u64) -> u64 {
     (bits as f64 * std::f64::consts::LOG10_2).ceil() as u64
 }
 
-fn expanded(ring: &Counted, work: &str, order: usize) -> Result<Expansion<Counted>, Box<dyn Error>> {
+fn expanded(
+    ring: &Counted,
+    work: &str,
+    order: usize,
+) -> Result<Expansion<Counted>, Box<dyn Error>> {
     let term = |order, position, velocity, numerator: i64, denominator: &Integer| ForceTerm {
         order,
         position,
         velocity,
-        coefficient: FourierSeries::constant(ring.clone(), Integer::from(numerator)).over(denominator),
+        coefficient: FourierSeries::constant(ring.clone(), Integer::from(numerator))
+            .over(denominator),
     };
     let one = Integer::from(1);
     let (force, amplitude) = match work {

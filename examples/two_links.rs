@@ -1,6 +1,8 @@
-//! A pendulum of two equal links, from its equations as text: its motion by Taylor series, checked by its energy and by Runge-Kutta.
+//! A pendulum of two equal links, from its equations as text: its motion by Taylor series, checked
+//! by its energy and by Runge-Kutta.
 //!
-//! `cargo run --example two_links`. Angles a and b from the vertical, rates p and q; length, mass and gravity are one.
+//! `cargo run --example two_links`. Angles a and b from the vertical, rates p and q; length, mass
+//! and gravity are one.
 
 use std::fmt::Write;
 
@@ -58,7 +60,11 @@ pub fn report() -> Result<String, Box<dyn std::error::Error>> {
         .iter()
         .map(|met| format!("{:.6}", met.time))
         .collect();
-    writeln!(out, "\nthe upper link is vertical at t = {}", times.join(", "))?;
+    writeln!(
+        out,
+        "\nthe upper link is vertical at t = {}",
+        times.join(", ")
+    )?;
     writeln!(out, "the energy is kept to 1e-12: {}", drift < 1e-12)?;
     writeln!(out, "Runge-Kutta agrees to 1e-10: {}", difference < 1e-10)?;
     Ok(out)

@@ -1,6 +1,6 @@
-//! The work that the fastest programs for perturbation series are measured by, printed line by line so that theirs can be compared:
-//! `workloads W1 40`. W1 Duffing, W2 the pendulum, W3 van der Pol, W4 three symbolic coefficients; `T` is the time of the
-//! calculation alone, in seconds.
+//! The work that the fastest programs for perturbation series are measured by, printed line by line
+//! so that theirs can be compared: `workloads W1 40`. W1 Duffing, W2 the pendulum, W3 van der Pol,
+//! W4 three symbolic coefficients; `T` is the time of the calculation alone, in seconds.
 
 use std::error::Error;
 use std::time::Instant;
@@ -71,7 +71,10 @@ fn conservative(force: &[ForceTerm<Integers>], order: usize) -> Result<(), Box<d
         println!("W {k} {}", mean(square));
     }
     for j in 0..=order {
-        println!("F {j} {}", mean(&expansion.displacement[order].cosine(2 * j + 1)));
+        println!(
+            "F {j} {}",
+            mean(&expansion.displacement[order].cosine(2 * j + 1))
+        );
     }
     Ok(())
 }
@@ -89,7 +92,10 @@ fn van_der_pol(order: usize) -> Result<(), Box<dyn Error>> {
         println!("A {k} {}", twice(&expansion.displacement[k].at_zero()));
     }
     for j in 0..order {
-        println!("F {j} {}", twice(&expansion.displacement[order - 1].sine(2 * j + 1)));
+        println!(
+            "F {j} {}",
+            twice(&expansion.displacement[order - 1].sine(2 * j + 1))
+        );
     }
     Ok(())
 }
@@ -108,7 +114,10 @@ fn symbolic(order: usize) -> Result<(), Box<dyn Error>> {
             order: 1,
             position,
             velocity: 0,
-            coefficient: FourierSeries::constant(Polynomials(Integers), Polynomial::symbol(Symbol::new(name))),
+            coefficient: FourierSeries::constant(
+                Polynomials(Integers),
+                Polynomial::symbol(Symbol::new(name)),
+            ),
         })
         .collect();
     let scheme = Scheme {

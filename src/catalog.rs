@@ -1,8 +1,10 @@
-//! Classical oscillators by name, each with its source and, where one is printed, the published law.
+//! Classical oscillators by name, each with its source and, where one is printed, the published
+//! law.
 //!
 //! In: a name. Out: an [`Entry`] with an equation to be parsed, and which methods apply to it.
 //!
-//! A published law is only what a derived one is compared with: nothing here is ever used as an answer.
+//! A published law is only what a derived one is compared with: nothing here is ever used as an
+//! answer.
 
 use std::fmt;
 
@@ -63,7 +65,8 @@ const fn omega_squared(law: &'static str, order: u32) -> Option<Published> {
 }
 
 const NAYFEH_MOOK: &str = "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, chapter 2";
-const NAYFEH_MOOK_DAMPED: &str = "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, chapter 3";
+const NAYFEH_MOOK_DAMPED: &str =
+    "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, chapter 3";
 const MICKENS: &str = "R. E. Mickens, Truly Nonlinear Oscillations, World Scientific 2010";
 
 /// Every oscillator, in the order of the listing.
@@ -283,7 +286,8 @@ pub fn find(name: &str) -> Option<&'static Entry> {
     CATALOG.iter().find(|entry| entry.name == name)
 }
 
-/// Every method at its default order on an entry: `Ok` where it applies, the refusal where it does not.
+/// Every method at its default order on an entry: `Ok` where it applies, the refusal where it does
+/// not.
 ///
 /// ```
 /// use lindstedt::catalog::{find, methods};

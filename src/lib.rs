@@ -1,7 +1,9 @@
-//! Closed-form approximations of nonlinear vibrations, derived exactly and judged against the true motion.
+//! Closed-form approximations of nonlinear vibrations, derived exactly and judged against the true
+//! motion.
 //!
-//! An equation of motion goes in as text; out come a frequency-amplitude law with exact coefficients, the motion as a
-//! Fourier series in `theta = omega t`, and a verdict against the original equation:
+//! An equation of motion goes in as text; out come a frequency-amplitude law with exact
+//! coefficients, the motion as a Fourier series in `theta = omega t`, and a verdict against the
+//! original equation:
 //!
 //! ```
 //! use lindstedt::{Options, Oscillator, Verdict, judge, solve};

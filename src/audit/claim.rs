@@ -77,7 +77,12 @@ pub enum Trend {
 
 impl Trend {
     /// Every trend.
-    pub const ALL: [Self; 4] = [Self::Falls, Self::Rises, Self::FirstIsLeast, Self::FirstIsGreatest];
+    pub const ALL: [Self; 4] = [
+        Self::Falls,
+        Self::Rises,
+        Self::FirstIsLeast,
+        Self::FirstIsGreatest,
+    ];
 
     /// The words in a file.
     pub fn name(self) -> &'static str {
@@ -94,8 +99,8 @@ impl Trend {
         Self::ALL.into_iter().find(|trend| trend.name() == name)
     }
 
-    /// Whether these numbers follow each other so. What differs by less than this part of its size is the same, and neither
-    /// falls nor rises.
+    /// Whether these numbers follow each other so. What differs by less than this part of its size
+    /// is the same, and neither falls nor rises.
     pub fn holds(self, numbers: &[f64], same: f64) -> bool {
         let falls = |one: f64, other: f64| other < one - same * one.abs();
         let first = numbers.first().copied().unwrap_or(f64::NAN);
@@ -157,7 +162,8 @@ pub enum Quantity {
     },
     /// A formula, the same as the printed one for every value of its symbols.
     Identity(Expr),
-    /// The equation of motion of the coordinate x, x'' first, that follows from energies and a force.
+    /// The equation of motion of the coordinate x, x'' first, that follows from energies and a
+    /// force.
     Motion {
         /// The kinetic energy.
         kinetic: Expr,
@@ -260,7 +266,9 @@ impl Question {
                 Supposition::Order(order) => question.options.order = Some(*order),
                 Supposition::Degrees(degrees) => question.options.degrees = Some(*degrees),
                 Supposition::Taylor(degree) => question.options.taylor = Some(*degree),
-                Supposition::Amplitude(convention) => question.options.amplitude = Some(*convention),
+                Supposition::Amplitude(convention) => {
+                    question.options.amplitude = Some(*convention)
+                }
                 Supposition::Rule(rule) => question.rule = *rule,
                 Supposition::Formula(formula, _) => question.quantity.read_as(formula),
                 Supposition::Values(values) => question.values.extend(values.iter().cloned()),
@@ -278,7 +286,11 @@ impl Quantity {
             | Self::Identity(formula)
             | Self::Trend(formula)
             | Self::Coordinates(formula) => *formula = other.clone(),
-            Self::Coefficient { .. } | Self::Law { .. } | Self::Motion { .. } | Self::Settings(_) | Self::Nothing => {}
+            Self::Coefficient { .. }
+            | Self::Law { .. }
+            | Self::Motion { .. }
+            | Self::Settings(_)
+            | Self::Nothing => {}
         }
     }
 }
@@ -288,7 +300,8 @@ impl Quantity {
 pub enum Verdict {
     /// To every printed digit.
     Reproduced,
-    /// To every printed digit, by something that the publication does not say and the program found.
+    /// To every printed digit, by something that the publication does not say and the program
+    /// found.
     UnderAssumption,
     /// Something that is needed is not printed.
     NotReproducible,

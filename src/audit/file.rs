@@ -1,7 +1,7 @@
 //! Files of claims, in TOML: `docs/audit.md` says what each key means.
 //!
-//! In: the text of a file. Out: [`Claims`], or the first mistake with its line and a caret below its place. A key that would say nothing
-//! to its claim is refused by name.
+//! In: the text of a file. Out: [`Claims`], or the first mistake with its line and a caret below
+//! its place. A key that would say nothing to its claim is refused by name.
 
 mod keys;
 mod names;
@@ -28,8 +28,8 @@ use crate::symbol::Symbol;
 use keys::{check_keys, kind};
 use names::{check_names, check_values};
 use values::{
-    convention, equal_to_zero, equation, expression, method, number, parsed, rounding, rule, symbol, table, tolerance,
-    verdict,
+    convention, equal_to_zero, equation, expression, method, number, parsed, rounding, rule,
+    symbol, table, tolerance, verdict,
 };
 
 /// Why a file has no claims that can be computed.
@@ -233,7 +233,12 @@ fn claim(section: &Section, shared: &BTreeMap<Symbol, Expr>) -> Found<Claim> {
             .unwrap_or_default(),
         values,
         pi: None,
-        rounding: section.rounding.as_ref().map(rounding).transpose()?.unwrap_or_default(),
+        rounding: section
+            .rounding
+            .as_ref()
+            .map(rounding)
+            .transpose()?
+            .unwrap_or_default(),
         tolerance: section.tolerance.as_ref().map(tolerance).transpose()?,
     };
     let suppositions = match &section.suppose {
@@ -245,7 +250,10 @@ fn claim(section: &Section, shared: &BTreeMap<Symbol, Expr>) -> Found<Claim> {
         .map(|subject| subject.len() + 1)
         .try_fold(1_usize, usize::checked_mul);
     if combinations.is_none_or(|count| count > MOST_COMBINATIONS) {
-        let span = section.suppose.as_ref().map_or(section.id.span(), Spanned::span);
+        let span = section
+            .suppose
+            .as_ref()
+            .map_or(section.id.span(), Spanned::span);
         return mistake(
             span,
             format!("these are more than {MOST_COMBINATIONS} combinations of suppositions"),
@@ -283,7 +291,11 @@ fn quantity(section: &Section, kind: &str) -> Found<Quantity> {
         }
     };
     let formula = || -> Found<Expr> { equal_to_zero(&needed("formula", &section.formula)?) };
-    let squared = || match section.of.as_ref().map(|of| (of.get_ref().as_str(), of.span())) {
+    let squared = || match section
+        .of
+        .as_ref()
+        .map(|of| (of.get_ref().as_str(), of.span()))
+    {
         None | Some(("frequency_squared", _)) => Ok(true),
         Some(("frequency", _)) => Ok(false),
         Some((other, span)) => helped(
@@ -319,16 +331,23 @@ fn quantity(section: &Section, kind: &str) -> Found<Quantity> {
                 term,
             }
         }
-        "law" => Quantity::Law { squared: squared()? },
+        "law" => Quantity::Law {
+            squared: squared()?,
+        },
         "taylor" => Quantity::Taylor {
             formula: formula()?,
             degree: match section.order.as_ref().map(Spanned::get_ref) {
                 Some(Order::Power(degree)) if *degree <= MOST_TAYLOR => *degree,
                 _ => {
-                    let span = section.order.as_ref().map_or(section.id.span(), Spanned::span);
+                    let span = section
+                        .order
+                        .as_ref()
+                        .map_or(section.id.span(), Spanned::span);
                     return mistake(
                         span,
-                        format!("a Taylor polynomial needs an `order`, its degree, up to {MOST_TAYLOR}"),
+                        format!(
+                            "a Taylor polynomial needs an `order`, its degree, up to {MOST_TAYLOR}"
+                        ),
                     );
                 }
             },
@@ -336,8 +355,14 @@ fn quantity(section: &Section, kind: &str) -> Found<Quantity> {
         "identity" => Quantity::Identity(formula()?),
         "motion" => Quantity::Motion {
             kinetic: expression(&needed("kinetic", &section.kinetic)?)?,
-            potential: section.potential.as_ref().map_or(Ok(Expr::zero()), expression)?,
-            force: section.force.as_ref().map_or(Ok(Expr::zero()), expression)?,
+            potential: section
+                .potential
+                .as_ref()
+                .map_or(Ok(Expr::zero()), expression)?,
+            force: section
+                .force
+                .as_ref()
+                .map_or(Ok(Expr::zero()), expression)?,
         },
         "coordinates" => Quantity::Coordinates(formula()?),
         "options" => Quantity::Settings(settings(section)?),
@@ -400,7 +425,12 @@ fn entries(section: &Section, kind: &str) -> Found<Vec<Entry>> {
             );
         };
         let printed = section.printed.as_ref().unwrap_or(text).get_ref();
-        let row = |row: &Spanned<Row>| match row.get_ref().printed.as_ref().or(row.get_ref().read_as.as_ref()) {
+        let row = |row: &Spanned<Row>| match row
+            .get_ref()
+            .printed
+            .as_ref()
+            .or(row.get_ref().read_as.as_ref())
+        {
             Some(text) => mistake(
                 text.span(),
                 "the entries of a trend have `values` alone: what is printed is the trend",
@@ -434,7 +464,11 @@ fn entries(section: &Section, kind: &str) -> Found<Vec<Entry>> {
             Ok(Entry {
                 values: own(row.get_ref())?,
                 printed: printed.get_ref().clone(),
-                read_as: row.get_ref().read_as.as_ref().map(|text| text.get_ref().clone()),
+                read_as: row
+                    .get_ref()
+                    .read_as
+                    .as_ref()
+                    .map(|text| text.get_ref().clone()),
                 stated: stated(kind, row.get_ref().read_as.as_ref().unwrap_or(printed))?,
             })
         };
@@ -465,7 +499,10 @@ fn entries(section: &Section, kind: &str) -> Found<Vec<Entry>> {
 fn no_number<T>(section: &Section) -> Found<T> {
     helped(
         section.id.span(),
-        format!("claim `{}` has nothing that is printed", section.id.get_ref()),
+        format!(
+            "claim `{}` has nothing that is printed",
+            section.id.get_ref()
+        ),
         "give `printed`, the text with all its digits: printed = \"0.8478\"",
     )
 }
@@ -547,16 +584,19 @@ fn options_of(section: &Section) -> Found<Options> {
 }
 
 fn suppositions(suppose: &Suppose) -> Found<Vec<Vec<Supposition>>> {
-    let each = |texts: &[Text], read: &dyn Fn(&Text) -> Found<Supposition>| -> Found<Vec<Supposition>> {
-        texts.iter().map(read).collect()
-    };
+    let each = |texts: &[Text],
+                read: &dyn Fn(&Text) -> Found<Supposition>|
+     -> Found<Vec<Supposition>> { texts.iter().map(read).collect() };
     let order = |order: &Order| match *order {
         Order::Power(order) => Supposition::Order(order),
         Order::Degrees(degrees) => Supposition::Degrees(degrees),
     };
     let pi = |value: &Spanned<toml::Value>| -> Found<Supposition> {
         let found = number(value.get_ref(), value.span())?;
-        match found.as_number().is_some_and(|number| *number > Rational::default()) {
+        match found
+            .as_number()
+            .is_some_and(|number| *number > Rational::default())
+        {
             true => Ok(Supposition::Pi(found)),
             false => mistake(
                 value.span(),
@@ -571,11 +611,18 @@ fn suppositions(suppose: &Suppose) -> Found<Vec<Vec<Supposition>>> {
             .map(|values| Ok(Supposition::Values(table(values)?.into_iter().collect())))
             .collect::<Found<_>>()?,
         suppose.pi.iter().map(pi).collect::<Found<_>>()?,
-        each(&suppose.rounding, &|text| Ok(Supposition::Rounding(rounding(text)?)))?,
-        each(&suppose.formula, &|text| {
-            Ok(Supposition::Formula(expression(text)?, text.get_ref().clone()))
+        each(&suppose.rounding, &|text| {
+            Ok(Supposition::Rounding(rounding(text)?))
         })?,
-        each(&suppose.method, &|text| Ok(Supposition::Method(method(text)?)))?,
+        each(&suppose.formula, &|text| {
+            Ok(Supposition::Formula(
+                expression(text)?,
+                text.get_ref().clone(),
+            ))
+        })?,
+        each(&suppose.method, &|text| {
+            Ok(Supposition::Method(method(text)?))
+        })?,
         suppose.order.iter().map(order).collect(),
         suppose
             .taylor
@@ -585,7 +632,9 @@ fn suppositions(suppose: &Suppose) -> Found<Vec<Vec<Supposition>>> {
         each(&suppose.amplitude, &|text| {
             Ok(Supposition::Amplitude(convention(text)?))
         })?,
-        each(&suppose.linearisation, &|text| Ok(Supposition::Rule(rule(text)?)))?,
+        each(&suppose.linearisation, &|text| {
+            Ok(Supposition::Rule(rule(text)?))
+        })?,
     ];
     Ok(subjects
         .into_iter()

@@ -1,7 +1,9 @@
-//! Whether two expressions are the same for every value of their symbols, and which terms make the difference.
+//! Whether two expressions are the same for every value of their symbols, and which terms make the
+//! difference.
 //!
-//! Written out in normal form they are compared term by term. Where that does not tell, since one law of the functions in them may
-//! turn one into the other, they are evaluated at points that hold for every run.
+//! Written out in normal form they are compared term by term. Where that does not tell, since one
+//! law of the functions in them may turn one into the other, they are evaluated at points that hold
+//! for every run.
 
 use std::collections::BTreeMap;
 
@@ -27,13 +29,19 @@ const ENOUGH: usize = 8;
 /// Expressions too large to be written out; no point at which both have a value.
 pub(super) fn difference(first: &Expr, second: &Expr) -> Result<Option<Difference>, String> {
     let words = |error: ExprError| error.to_string();
-    let (one, other) = (first.expand().map_err(words)?, second.expand().map_err(words)?);
+    let (one, other) = (
+        first.expand().map_err(words)?,
+        second.expand().map_err(words)?,
+    );
     let rest = (&one - &other).expand().map_err(words)?;
     if rest.is_zero() || agree(&one, &other)? {
         return Ok(None);
     }
     let apart = |these: &Expr, those: &Expr| -> Vec<Expr> {
-        let terms = these.terms().iter().filter(|term| !those.terms().contains(term));
+        let terms = these
+            .terms()
+            .iter()
+            .filter(|term| !those.terms().contains(term));
         terms.cloned().collect()
     };
     Ok(Some(Difference {
@@ -45,7 +53,8 @@ pub(super) fn difference(first: &Expr, second: &Expr) -> Result<Option<Differenc
 /// Whether two expressions have the same value wherever both have one.
 fn agree(one: &Expr, other: &Expr) -> Result<bool, String> {
     let symbols: Vec<Symbol> = one.symbols().union(&other.symbols()).copied().collect();
-    let compiled = |expr: &Expr| CompiledFunction::new(expr, &symbols).map_err(|error| error.to_string());
+    let compiled =
+        |expr: &Expr| CompiledFunction::new(expr, &symbols).map_err(|error| error.to_string());
     let (first, second) = (compiled(one)?, compiled(other)?);
     // A linear congruence: the same points on every run.
     let mut state = 0x2545_F491_4F6C_DD1D_u64;
@@ -80,12 +89,16 @@ fn agree(one: &Expr, other: &Expr) -> Result<bool, String> {
     }
 }
 
-/// An expression with these definitions put in, which may use each other. `X'` is the time derivative of what `X` is defined as, where
-/// it has no definition of its own; of the letters in that `t` is the time, and `x` moves.
+/// An expression with these definitions put in, which may use each other. `X'` is the time
+/// derivative of what `X` is defined as, where it has no definition of its own; of the letters in
+/// that `t` is the time, and `x` moves.
 ///
 /// # Errors
 /// A definition that uses itself; a result without a value.
-pub(super) fn with_definitions(expr: &Expr, definitions: &BTreeMap<Symbol, Expr>) -> Result<Expr, String> {
+pub(super) fn with_definitions(
+    expr: &Expr,
+    definitions: &BTreeMap<Symbol, Expr>,
+) -> Result<Expr, String> {
     let mut found = expr.clone();
     let mut definitions = definitions.clone();
     for symbol in expr.symbols() {
@@ -102,7 +115,9 @@ pub(super) fn with_definitions(expr: &Expr, definitions: &BTreeMap<Symbol, Expr>
         if !definitions.keys().any(|name| found.contains(*name)) {
             return Ok(found);
         }
-        found = found.substitute_all(&definitions).map_err(|error| error.to_string())?;
+        found = found
+            .substitute_all(&definitions)
+            .map_err(|error| error.to_string())?;
     }
     let own = definitions.keys().find(|name| found.contains(**name));
     match own {
@@ -129,7 +144,13 @@ mod tests {
 
     fn apart(one: &str, other: &str) -> Option<[String; 2]> {
         let [one, other] = [one, other].map(|text| parse_expression(text).expect("an expression"));
-        let words = |terms: Vec<Expr>| terms.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
+        let words = |terms: Vec<Expr>| {
+            terms
+                .iter()
+                .map(ToString::to_string)
+                .collect::<Vec<_>>()
+                .join("; ")
+        };
         difference(&one, &other)
             .expect("a comparison")
             .map(|found| [words(found.only_first), words(found.only_second)])
@@ -151,10 +172,13 @@ mod tests {
     fn the_terms_that_differ_are_named() {
         let found = apart("(a + 1)^2 + b", "(a + 1)^2 + b^2");
         assert_eq!(found, Some(["b".to_owned(), "b^2".to_owned()]));
-        assert_eq!(apart("x", "x + 1e-6"), Some([String::new(), "1/1000000".to_owned()]));
+        assert_eq!(
+            apart("x", "x + 1e-6"),
+            Some([String::new(), "1/1000000".to_owned()])
+        );
         // It is not where both have no value that they agree.
-        let [one, other] =
-            ["sqrt(-1 - x^2)", "sqrt(-2 - x^2)"].map(|text| parse_expression(text).expect("an expression"));
+        let [one, other] = ["sqrt(-1 - x^2)", "sqrt(-2 - x^2)"]
+            .map(|text| parse_expression(text).expect("an expression"));
         assert!(difference(&one, &other).is_err());
     }
 
@@ -169,13 +193,19 @@ mod tests {
         };
         let f = parse_expression("F + 1").expect("an expression");
         let found = with_definitions(&f, &define(&[("F", "k*d"), ("k", "2")]));
-        assert_eq!(found.map(|found| found.to_string()), Ok("1 + 2*d".to_owned()));
+        assert_eq!(
+            found.map(|found| found.to_string()),
+            Ok("1 + 2*d".to_owned())
+        );
         let rate = parse_expression("X' + F'").expect("an expression");
         let found = with_definitions(&rate, &define(&[("X", "t*sin(x)"), ("F'", "3")]));
         assert_eq!(
             found.map(|found| found.to_string()),
             Ok("3 + sin(x) + x'*t*cos(x)".to_owned())
         );
-        assert!(with_definitions(&f, &define(&[("F", "k"), ("k", "F")])).is_err_and(|error| error.contains("itself")));
+        assert!(
+            with_definitions(&f, &define(&[("F", "k"), ("k", "F")]))
+                .is_err_and(|error| error.contains("itself"))
+        );
     }
 }

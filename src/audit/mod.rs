@@ -1,9 +1,11 @@
-//! Claims of a publication, each computed again: a verdict on every printed number, formula and table.
+//! Claims of a publication, each computed again: a verdict on every printed number, formula and
+//! table.
 //!
-//! In: an [`Audit`]'s question, a list of [`Claim`]s, from a file by [`Claims`] or made in Rust. Out: the [`Audit`], a [`Finding`] for
-//! each: `reproduced` to every printed digit; `reproduced-under-assumption`, by the fewest of the things that the claim allows to be
-//! supposed, or by an unknown number solved for; `not-reproducible` for want of what is not printed; `inconsistent` with what is
-//! computed. What is printed is only ever compared with.
+//! In: an [`Audit`]'s question, a list of [`Claim`]s, from a file by [`Claims`] or made in Rust.
+//! Out: the [`Audit`], a [`Finding`] for each: `reproduced` to every printed digit;
+//! `reproduced-under-assumption`, by the fewest of the things that the claim allows to be supposed,
+//! or by an unknown number solved for; `not-reproducible` for want of what is not printed;
+//! `inconsistent` with what is computed. What is printed is only ever compared with.
 //!
 //! ```
 //! use lindstedt::audit::{Claims, Verdict, audit};
@@ -127,7 +129,8 @@ impl Finding {
         best.or(self.tried.first())
     }
 
-    /// Whether the verdict is the expected one: a claim that says nothing of that is expected to be reproduced.
+    /// Whether the verdict is the expected one: a claim that says nothing of that is expected to be
+    /// reproduced.
     pub fn is_as_expected(&self) -> bool {
         match self.claim.expected {
             Some(expected) => self.verdict == expected,
@@ -145,7 +148,8 @@ impl Audit {
             .count()
     }
 
-    /// Whether every verdict is the expected one; with `strict`, whether every claim is reproduced, whatever is expected.
+    /// Whether every verdict is the expected one; with `strict`, whether every claim is reproduced,
+    /// whatever is expected.
     pub fn passes(&self, strict: bool) -> bool {
         let passes = |finding: &Finding| match strict {
             true => finding.verdict.is_reproduced(),
@@ -272,12 +276,20 @@ fn attempt(claim: &Claim, chosen: &[&Supposition]) -> Tried {
     compare(claim, &question, &evaluator, chosen, None)
 }
 
-/// What is supposed in words, with the numbers of what follows from the values of the claim, and the value of an unknown.
-fn words(question: &Question, chosen: &[&Supposition], unknown: Option<(Symbol, f64)>) -> Vec<String> {
+/// What is supposed in words, with the numbers of what follows from the values of the claim, and
+/// the value of an unknown.
+fn words(
+    question: &Question,
+    chosen: &[&Supposition],
+    unknown: Option<(Symbol, f64)>,
+) -> Vec<String> {
     let number = |value: &Expr| {
         let found = identity::with_definitions(value, &question.values).ok()?;
         let is_plain = value.symbols().is_empty();
-        let number = found.evaluate(&BTreeMap::new()).ok().filter(|_| !is_plain)?;
+        let number = found
+            .evaluate(&BTreeMap::new())
+            .ok()
+            .filter(|_| !is_plain)?;
         Some(format!(" = {}", decimal(number)))
     };
     let one = |supposition: &&Supposition| match supposition {
@@ -307,17 +319,23 @@ fn compare(
         .iter()
         .map(|entry| evaluator.compute(&entry.values, unknown))
         .collect();
-    let numbers: Option<Vec<f64>> = computed.iter().map(|found| found.as_ref().ok()?.number()).collect();
-    let comes_out = |(entry, found): (&Entry, &Result<Computed, Lack>)| match (&entry.stated, found) {
+    let numbers: Option<Vec<f64>> = computed
+        .iter()
+        .map(|found| found.as_ref().ok()?.number())
+        .collect();
+    let comes_out = |(entry, found): (&Entry, &Result<Computed, Lack>)| match (&entry.stated, found)
+    {
         (Stated::Number(printed), Ok(Computed::Number(number))) => {
             printed.is_reproduced_by(*number, question.rounding, question.tolerance)
         }
         (Stated::Number(printed), Ok(Computed::Exact(number))) => {
             printed.is_reproduced_exactly_by(number, question.rounding, question.tolerance)
         }
-        (Stated::Number(printed), Ok(Computed::Absent)) => {
-            printed.is_reproduced_exactly_by(&Rational::default(), question.rounding, question.tolerance)
-        }
+        (Stated::Number(printed), Ok(Computed::Absent)) => printed.is_reproduced_exactly_by(
+            &Rational::default(),
+            question.rounding,
+            question.tolerance,
+        ),
         (Stated::Formula(printed), Ok(Computed::Formula(formula))) => {
             let printed = identity::with_definitions(printed, &question.values);
             printed
@@ -326,7 +344,9 @@ fn compare(
         }
         (Stated::Trend(trend), Ok(_)) => {
             let same = question.tolerance.unwrap_or(SAME);
-            numbers.as_ref().is_some_and(|numbers| trend.holds(numbers, same))
+            numbers
+                .as_ref()
+                .is_some_and(|numbers| trend.holds(numbers, same))
         }
         (Stated::Words, Ok(Computed::Conflicts(conflicts))) => conflicts.is_empty(),
         _ => false,
@@ -339,7 +359,8 @@ fn compare(
     }
 }
 
-/// Numbers that differ by no more than this part of their size neither rise nor fall, where a claim says nothing else.
+/// Numbers that differ by no more than this part of their size neither rise nor fall, where a claim
+/// says nothing else.
 pub const SAME: f64 = 1e-3;
 
 /// The unknown of a claim, under these suppositions.
@@ -347,15 +368,25 @@ fn solve_for(claim: &Claim, chosen: &[&Supposition], unknown: Unknown) -> Option
     let question = claim.question.supposing(chosen);
     let evaluator = Evaluator::new(&question);
     unknown::solve(unknown, &|value| {
-        let found = compare(claim, &question, &evaluator, chosen, Some((unknown.name, value)));
-        let differences = claim.entries.iter().zip(&found.computed).map(|(entry, found)| {
-            let (Stated::Number(printed), Ok(found)) = (&entry.stated, found) else {
-                return f64::NAN;
-            };
-            found
-                .number()
-                .map_or(f64::NAN, |number| number - printed.middle(question.rounding))
-        });
+        let found = compare(
+            claim,
+            &question,
+            &evaluator,
+            chosen,
+            Some((unknown.name, value)),
+        );
+        let differences = claim
+            .entries
+            .iter()
+            .zip(&found.computed)
+            .map(|(entry, found)| {
+                let (Stated::Number(printed), Ok(found)) = (&entry.stated, found) else {
+                    return f64::NAN;
+                };
+                found.number().map_or(f64::NAN, |number| {
+                    number - printed.middle(question.rounding)
+                })
+            });
         Trial {
             differences: differences.collect(),
             reproduces: found.is_reproduced(),
@@ -364,7 +395,12 @@ fn solve_for(claim: &Claim, chosen: &[&Supposition], unknown: Unknown) -> Option
 }
 
 /// The verdict on what was tried.
-fn finding(claim: Claim, tried: Vec<Tried>, demand: Option<Demand>, outside: Vec<String>) -> Finding {
+fn finding(
+    claim: Claim,
+    tried: Vec<Tried>,
+    demand: Option<Demand>,
+    outside: Vec<String>,
+) -> Finding {
     let alone = tried.first();
     let best = tried.iter().find(|tried| tried.is_reproduced());
     let mut missing: BTreeSet<String> = BTreeSet::new();
@@ -398,7 +434,11 @@ fn finding(claim: Claim, tried: Vec<Tried>, demand: Option<Demand>, outside: Vec
     evidence.extend(outside);
     match (best, verdict) {
         (None, Verdict::Inconsistent) if demand.is_none() => {
-            evidence.extend(alone.map(|alone| against(&claim, alone)).unwrap_or_default());
+            evidence.extend(
+                alone
+                    .map(|alone| against(&claim, alone))
+                    .unwrap_or_default(),
+            );
         }
         _ => {}
     }
@@ -426,7 +466,10 @@ fn against(claim: &Claim, tried: &Tried) -> Vec<String> {
     let several = claim.entries.len() > 1;
     if several && tried.reproduced.iter().any(|entry| *entry) {
         let count = tried.reproduced.iter().filter(|entry| **entry).count();
-        return vec![format!("{count} of {} entries come out", claim.entries.len())];
+        return vec![format!(
+            "{count} of {} entries come out",
+            claim.entries.len()
+        )];
     }
     if let Some(Stated::Trend(_)) = claim.entries.first().map(|entry| &entry.stated) {
         return vec![format!("computed: {}", numbers_of(claim, tried))];
@@ -472,12 +515,18 @@ fn versus(entry: &Entry, printed: &Printed, number: f64) -> String {
                     ": the printed one is {} % too large",
                     significant(100.0 * (ratio - 1.0), 3)
                 ),
-                _ => format!(": the printed one is {} times as large", significant(ratio, 3)),
+                _ => format!(
+                    ": the printed one is {} times as large",
+                    significant(ratio, 3)
+                ),
             }
         }
         _ => String::new(),
     };
-    format!("printed {}{read}, computed {computed}{difference}", entry.printed)
+    format!(
+        "printed {}{read}, computed {computed}{difference}",
+        entry.printed
+    )
 }
 
 fn formula_versus(printed: Result<Expr, String>, formula: &Expr) -> Vec<String> {
@@ -489,8 +538,8 @@ fn formula_versus(printed: Result<Expr, String>, formula: &Expr) -> Vec<String> 
         Err(reason) => vec![reason],
         Ok(None) => vec![],
         Ok(Some(rest)) => {
-            let printed =
-                (!rest.only_first.is_empty()).then(|| format!("printed, but not derived: {}", list(&rest.only_first)));
+            let printed = (!rest.only_first.is_empty())
+                .then(|| format!("printed, but not derived: {}", list(&rest.only_first)));
             let derived = (!rest.only_second.is_empty())
                 .then(|| format!("derived, but not printed: {}", list(&rest.only_second)));
             printed.into_iter().chain(derived).collect()
@@ -528,7 +577,10 @@ const TOLD: usize = 8;
 /// What comes of the other things that were tried: a sentence each.
 fn others(claim: &Claim, tried: &[Tried]) -> Vec<String> {
     let entries = claim.entries.len();
-    let is_trend = matches!(claim.entries.first().map(|entry| &entry.stated), Some(Stated::Trend(_)));
+    let is_trend = matches!(
+        claim.entries.first().map(|entry| &entry.stated),
+        Some(Stated::Trend(_))
+    );
     let told = tried.iter().enumerate().filter(|(index, one)| {
         // The claim alone is told elsewhere, but for how much of it comes out.
         let worth = *index > 0 || entries > 1 && !is_trend && tried.len() > 1;
@@ -579,8 +631,9 @@ fn share_unknowns(findings: &mut [Finding]) {
         let others = demands
             .iter()
             .filter(|(other, _, of_other)| other != index && of_other.unknown.name == name);
-        let (with, against): (Vec<_>, Vec<_>) =
-            others.partition(|(_, _, of_other)| unknown::in_common(&[demand.range, of_other.range]).is_some());
+        let (with, against): (Vec<_>, Vec<_>) = others.partition(|(_, _, of_other)| {
+            unknown::in_common(&[demand.range, of_other.range]).is_some()
+        });
         let finding = &mut findings[*index];
         let range = |demand: &Demand| demand.range.map(|end| significant(end, 4)).join(" to ");
         if let Some((_, id, of_other)) = against.first() {

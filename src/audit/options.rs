@@ -1,7 +1,9 @@
-//! Which options of a genetic algorithm go together: what a table of options says is checked rule by rule.
+//! Which options of a genetic algorithm go together: what a table of options says is checked rule
+//! by rule.
 //!
-//! The names are those of the toolbox in general use, and the rules what its documentation says of them: which functions take
-//! genes that are numbers, which constraints a population of bits can keep, what the penalties of the augmented Lagrangian act on.
+//! The names are those of the toolbox in general use, and the rules what its documentation says of
+//! them: which functions take genes that are numbers, which constraints a population of bits can
+//! keep, what the penalties of the augmented Lagrangian act on.
 
 /// Options whose values the rules know, as they are written in a file.
 #[cfg(any(feature = "toml", test))]
@@ -104,8 +106,13 @@ pub(super) fn conflicts(settings: &[(String, String)]) -> Vec<String> {
     let broken = RULES.iter().filter_map(|rule| {
         let value = stated(rule.option)?;
         let other = stated(rule.needs)?;
-        let applies = rule.value.is_none_or(|wanted| value.eq_ignore_ascii_case(wanted));
-        let met = rule.among.iter().any(|wanted| other.eq_ignore_ascii_case(wanted));
+        let applies = rule
+            .value
+            .is_none_or(|wanted| value.eq_ignore_ascii_case(wanted));
+        let met = rule
+            .among
+            .iter()
+            .any(|wanted| other.eq_ignore_ascii_case(wanted));
         (applies && !met).then(|| {
             format!(
                 "{} = {value} needs {} = {}, not {other}: {}",
@@ -144,6 +151,9 @@ mod tests {
         assert_eq!(found(&[heuristic, ("population type", "Bit string")]), 1);
         assert_eq!(found(&[heuristic, ("population type", "double vector")]), 0);
         assert_eq!(found(&[heuristic]), 0);
-        assert_eq!(found(&[("penalty factor", "100"), ("constraints", "bounds")]), 1);
+        assert_eq!(
+            found(&[("penalty factor", "100"), ("constraints", "bounds")]),
+            1
+        );
     }
 }

@@ -1,7 +1,8 @@
 //! A number as it is printed: its digits say how far it can be trusted.
 //!
-//! In: text such as `0.8478`, `+0.99413`, `9.258e-8`, `7/1536`, `0.586 %` or `< 2 %`. Out: whether a computed number has these
-//! digits, rounded or cut off, lies within a tolerance, or on the right side of a bound.
+//! In: text such as `0.8478`, `+0.99413`, `9.258e-8`, `7/1536`, `0.586 %` or `< 2 %`. Out: whether
+//! a computed number has these digits, rounded or cut off, lies within a tolerance, or on the right
+//! side of a bound.
 
 use crate::decimal::significant;
 use crate::exact::Rational;
@@ -88,9 +89,9 @@ impl Printed {
             ("<", Relation::Below, false),
             (">", Relation::Above, false),
         ];
-        let found = signs
-            .into_iter()
-            .find_map(|(sign, relation, bound)| Some((text.strip_prefix(sign)?.trim(), relation, bound)));
+        let found = signs.into_iter().find_map(|(sign, relation, bound)| {
+            Some((text.strip_prefix(sign)?.trim(), relation, bound))
+        });
         let (text, relation, with_bound) = found.unwrap_or((text, Relation::Equal, false));
         let (number, percent) = match text.strip_suffix('%') {
             Some(number) => (number.trim_end(), 0.01),
@@ -100,7 +101,8 @@ impl Printed {
         if number.len() > unsigned.len() + 1 {
             return None;
         }
-        let all_digits = |text: &str| !text.is_empty() && text.bytes().all(|letter| letter.is_ascii_digit());
+        let all_digits =
+            |text: &str| !text.is_empty() && text.bytes().all(|letter| letter.is_ascii_digit());
         if let Some((above, below)) = unsigned.split_once('/') {
             if !(all_digits(above) && all_digits(below)) || percent != 1.0 {
                 return None;
@@ -119,7 +121,10 @@ impl Printed {
         }
         let (digits, exponent) = unsigned.split_once(['e', 'E']).unwrap_or((unsigned, "0"));
         let (whole, part) = digits.split_once('.').unwrap_or((digits, "0"));
-        let exponent: i32 = exponent.parse().ok().filter(|size: &i32| size.abs() <= 300)?;
+        let exponent: i32 = exponent
+            .parse()
+            .ok()
+            .filter(|size: &i32| size.abs() <= 300)?;
         // A leading zero may be left out.
         let is_whole_number = all_digits(whole) || whole.is_empty() && digits.contains('.');
         if !(is_whole_number && all_digits(part)) {
@@ -142,7 +147,9 @@ impl Printed {
 
     /// Digits behind the decimal point.
     fn decimals(&self) -> usize {
-        self.digits.split_once('.').map_or(0, |(_, part)| part.len())
+        self.digits
+            .split_once('.')
+            .map_or(0, |(_, part)| part.len())
     }
 
     /// How many digits it has that say something.
@@ -151,14 +158,21 @@ impl Printed {
         digits.skip_while(|digit| *digit == b'0').count()
     }
 
-    /// Whether a number is printed so: by its digits, or within a relative tolerance, or on the right side of a bound. What is no
-    /// number never is.
-    pub fn is_reproduced_by(&self, number: f64, rounding: Rounding, tolerance: Option<f64>) -> bool {
+    /// Whether a number is printed so: by its digits, or within a relative tolerance, or on the
+    /// right side of a bound. What is no number never is.
+    pub fn is_reproduced_by(
+        &self,
+        number: f64,
+        rounding: Rounding,
+        tolerance: Option<f64>,
+    ) -> bool {
         let is_bound = self.with_bound && number == self.value;
         match (self.relation, tolerance) {
             (Relation::Below, _) => number < self.value || is_bound,
             (Relation::Above, _) => number > self.value || is_bound,
-            (Relation::Equal, Some(tolerance)) => (number - self.value).abs() <= tolerance * self.value.abs(),
+            (Relation::Equal, Some(tolerance)) => {
+                (number - self.value).abs() <= tolerance * self.value.abs()
+            }
             // A fraction has no last digit.
             (Relation::Equal, None) if self.digits.is_empty() => {
                 (number - self.value).abs() <= 1e-12 * self.value.abs()
@@ -166,13 +180,20 @@ impl Printed {
             (Relation::Equal, None) => match rounding {
                 Rounding::Rounded => self.has_digits_of(number),
                 Rounding::Cut => self.has_digits_of(self.cut(number)),
-                Rounding::Either => self.has_digits_of(number) || self.has_digits_of(self.cut(number)),
+                Rounding::Either => {
+                    self.has_digits_of(number) || self.has_digits_of(self.cut(number))
+                }
             },
         }
     }
 
     /// The same of a fraction: one that is printed as a fraction must be it, exactly.
-    pub fn is_reproduced_exactly_by(&self, number: &Rational, rounding: Rounding, tolerance: Option<f64>) -> bool {
+    pub fn is_reproduced_exactly_by(
+        &self,
+        number: &Rational,
+        rounding: Rounding,
+        tolerance: Option<f64>,
+    ) -> bool {
         match (&self.exact, self.relation, tolerance) {
             (Some(exact), Relation::Equal, None) => exact == number,
             _ => self.is_reproduced_by(to_f64(number), rounding, tolerance),
@@ -189,17 +210,22 @@ impl Printed {
 
     fn has_digits_of(&self, number: f64) -> bool {
         let written = format!("{:.*}", self.decimals(), number.abs() / self.scale);
-        let zeros = written.bytes().all(|letter| !letter.is_ascii_digit() || letter == b'0');
+        let zeros = written
+            .bytes()
+            .all(|letter| !letter.is_ascii_digit() || letter == b'0');
         let written = written.trim_start_matches('0');
         // No sign stands before a zero; a leading zero may be left out.
-        written == self.digits.trim_start_matches('0') && (zeros || (number < 0.0) == (self.value < 0.0))
+        written == self.digits.trim_start_matches('0')
+            && (zeros || (number < 0.0) == (self.value < 0.0))
     }
 
     /// Where a number must cross to be printed so: the middle of what is printed.
     pub(super) fn middle(&self, rounding: Rounding) -> f64 {
         let unit = self.scale * 10_f64.powi(-(self.decimals() as i32));
         match rounding {
-            Rounding::Cut if !self.digits.is_empty() => self.value + (0.5 * unit).copysign(self.value),
+            Rounding::Cut if !self.digits.is_empty() => {
+                self.value + (0.5 * unit).copysign(self.value)
+            }
             _ => self.value,
         }
     }
@@ -260,19 +286,29 @@ mod tests {
         assert!(reproduced("2", 2.1, Some(0.06)) && !reproduced("2", 2.1, Some(0.04)));
         let third = Rational::new(1.into(), 3.into());
         let exactly = |text: &str| {
-            Printed::read(text).is_some_and(|it| it.is_reproduced_exactly_by(&third, Rounding::Rounded, None))
+            Printed::read(text)
+                .is_some_and(|it| it.is_reproduced_exactly_by(&third, Rounding::Rounded, None))
         };
-        assert!(exactly("1/3") && exactly("2/6") && exactly("0.33") && !exactly("33/100") && !exactly("0"));
+        assert!(
+            exactly("1/3")
+                && exactly("2/6")
+                && exactly("0.33")
+                && !exactly("33/100")
+                && !exactly("0")
+        );
     }
 
     #[test]
     fn what_is_no_number_is_refused() {
         for text in [
-            "", "abc", "1.2.3", "1,5", "--1", "1/2/3", "1e", "e5", "5 kg", "1/2 %", "1e999", "< ", "%", "nan", "inf",
-            "1.",
+            "", "abc", "1.2.3", "1,5", "--1", "1/2/3", "1e", "e5", "5 kg", "1/2 %", "1e999", "< ",
+            "%", "nan", "inf", "1.",
         ] {
             assert_eq!(Printed::read(text), None, "{text}");
         }
-        assert_eq!(Printed::read("0.0340").map(|it| it.significant_digits()), Some(3));
+        assert_eq!(
+            Printed::read("0.0340").map(|it| it.significant_digits()),
+            Some(3)
+        );
     }
 }

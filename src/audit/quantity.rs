@@ -1,8 +1,9 @@
 //! What a claim may be about: the names that formulas may use, and the program that computes them.
 //!
-//! In: a [`Question`] and the values of an entry. Out: what is computed, or what it lacks. The numbers come from where every other
-//! command has them: laws from [`method::solve`](crate::method::solve), true frequencies from the judge, phases and contacts from
-//! [`impact`](crate::impact), rest times from its simulation.
+//! In: a [`Question`] and the values of an entry. Out: what is computed, or what it lacks. The
+//! numbers come from where every other command has them: laws from
+//! [`method::solve`](crate::method::solve), true frequencies from the judge, phases and contacts
+//! from [`impact`](crate::impact), rest times from its simulation.
 
 use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,8 +15,8 @@ use crate::exact::{Monomial, Polynomial, Rational};
 use crate::expr::{CompiledFunction, Expr, ExprError, Node};
 use crate::impact::primary::{Primary, PrimaryCase, PrimarySettings, simulate_primary};
 use crate::impact::{
-    ContactSpeed, Form, Impact, Integrator, Model, Reading, Settings, Setup, Start, Swing, ThreePhases, course, hertz,
-    three_phases,
+    ContactSpeed, Form, Impact, Integrator, Model, Reading, Settings, Setup, Start, Swing,
+    ThreePhases, course, hertz, three_phases,
 };
 use crate::mechanics::Mechanism;
 use crate::method::numbers::frequency_squared_of;
@@ -27,9 +28,14 @@ use crate::symbol::Symbol;
 use crate::values::Values;
 use crate::verify::{DEFAULT_TOLERANCE, Extent, judge_to, needed_values};
 
-/// What the program computes by name, beside the values that a file gives: the name, what it needs, what it is.
+/// What the program computes by name, beside the values that a file gives: the name, what it needs,
+/// what it is.
 pub const NAMES: [(&str, &str, &str); 29] = [
-    ("frequency", "equation, its parameters, A", "omega by the method"),
+    (
+        "frequency",
+        "equation, its parameters, A",
+        "omega by the method",
+    ),
     (
         "true_frequency",
         "equation, its parameters, A",
@@ -45,7 +51,11 @@ pub const NAMES: [(&str, &str, &str); 29] = [
         "A, xc",
         "time from the release to the barrier, by one cosine",
     ),
-    ("paper_speed", "A, xc", "speed at the barrier, by one cosine"),
+    (
+        "paper_speed",
+        "A, xc",
+        "speed at the barrier, by one cosine",
+    ),
     (
         "paper_penetration",
         "A, xc, gamma",
@@ -89,20 +99,36 @@ pub const NAMES: [(&str, &str, &str); 29] = [
         "slope p of the line p*x - q, per unit of gamma",
     ),
     ("line_constant", "A, xc, gamma", "constant q of that line"),
-    ("line_depth", "A, xc, gamma", "depth over which it is fitted"),
+    (
+        "line_depth",
+        "A, xc, gamma",
+        "depth over which it is fitted",
+    ),
     (
         "true_time_to_contact",
         "A, xc, gamma",
         "time to the barrier, by Runge-Kutta",
     ),
-    ("true_speed", "A, xc, gamma", "speed at the barrier, by Runge-Kutta"),
-    ("true_penetration", "A, xc, gamma", "greatest depth, by Runge-Kutta"),
+    (
+        "true_speed",
+        "A, xc, gamma",
+        "speed at the barrier, by Runge-Kutta",
+    ),
+    (
+        "true_penetration",
+        "A, xc, gamma",
+        "greatest depth, by Runge-Kutta",
+    ),
     (
         "true_duration",
         "A, xc, gamma",
         "duration of the contact, by Runge-Kutta",
     ),
-    ("true_period", "A, xc, gamma", "period with the impact, by Runge-Kutta"),
+    (
+        "true_period",
+        "A, xc, gamma",
+        "period with the impact, by Runge-Kutta",
+    ),
     (
         "hertz_factor",
         "",
@@ -214,14 +240,17 @@ impl<'a> Evaluator<'a> {
             }
             Quantity::Coefficient { squared, term } => {
                 let law = self.polynomial(*squared)?;
-                let monomial =
-                    monomial(term).ok_or_else(|| Lack::Refused(format!("`{term}` is no product of powers")))?;
+                let monomial = monomial(term)
+                    .ok_or_else(|| Lack::Refused(format!("`{term}` is no product of powers")))?;
                 coefficient(&law, &monomial)
             }
-            Quantity::Law { squared } => Ok(Computed::Formula(Expr::from(&self.polynomial(*squared)?))),
+            Quantity::Law { squared } => {
+                Ok(Computed::Formula(Expr::from(&self.polynomial(*squared)?)))
+            }
             Quantity::Taylor { formula, degree } => {
                 let about = [(Symbol::new("x"), Rational::default())];
-                let parts = taylor(formula, &about, *degree).map_err(|error| Lack::Refused(error.to_string()))?;
+                let parts = taylor(formula, &about, *degree)
+                    .map_err(|error| Lack::Refused(error.to_string()))?;
                 Ok(Computed::Formula(Expr::sum(parts)))
             }
             Quantity::Identity(formula) => identity::with_definitions(formula, &values)
@@ -250,10 +279,13 @@ impl<'a> Evaluator<'a> {
             return Err(missing("equation"));
         };
         let found = self.law.get_or_init(|| {
-            let solution = solve(equation, &self.question.options).map_err(|error| error.to_string())?;
+            let solution =
+                solve(equation, &self.question.options).map_err(|error| error.to_string())?;
             Ok((equation.clone(), solution))
         });
-        found.as_ref().map_err(|reason| Lack::Refused(reason.clone()))
+        found
+            .as_ref()
+            .map_err(|reason| Lack::Refused(reason.clone()))
     }
 
     /// omega or omega^2 as a polynomial.
@@ -265,11 +297,15 @@ impl<'a> Evaluator<'a> {
         };
         found.cloned().ok_or_else(|| {
             let name = if squared { "omega^2" } else { "omega" };
-            Lack::Refused(format!("{} gives no polynomial for {name}", solution.title()))
+            Lack::Refused(format!(
+                "{} gives no polynomial for {name}",
+                solution.title()
+            ))
         })
     }
 
-    /// The swing of an impact, the pendulum where no equation is given, and its law, of order 2 where none is asked for.
+    /// The swing of an impact, the pendulum where no equation is given, and its law, of order 2
+    /// where none is asked for.
     fn swing(&self) -> Result<&(Oscillator, Solution), Lack> {
         let found = self.swing.get_or_init(|| {
             let words = |error: &dyn std::error::Error| error.to_string();
@@ -284,7 +320,9 @@ impl<'a> Evaluator<'a> {
             let solution = solve(&equation, &options).map_err(|error| words(&error))?;
             Ok((equation, solution))
         });
-        found.as_ref().map_err(|reason| Lack::Refused(reason.clone()))
+        found
+            .as_ref()
+            .map_err(|reason| Lack::Refused(reason.clone()))
     }
 }
 
@@ -313,7 +351,9 @@ fn coefficient(law: &Polynomial, wanted: &Monomial) -> Result<Computed, Lack> {
     }
     for &(letter, power) in wanted.factors() {
         let powers = law.terms().map(|(monomial, _)| monomial.exponent(letter));
-        let [least, greatest] = powers.fold([0, 0], |[least, greatest], one| [least.min(one), greatest.max(one)]);
+        let [least, greatest] = powers.fold([0, 0], |[least, greatest], one| {
+            [least.min(one), greatest.max(one)]
+        });
         if [least, greatest] == [0, 0] {
             return Err(Lack::Refused(format!(
                 "`{letter}` does not occur in the derived law `{}`",
@@ -429,7 +469,8 @@ impl Scope<'_, '_> {
             "paper_deviation" => {
                 let impact = self.impact()?;
                 let column = impact.column(Reading::Paper);
-                let column = column.ok_or_else(|| Lack::Refused(impact.no_paper.clone().unwrap_or_default()))?;
+                let column = column
+                    .ok_or_else(|| Lack::Refused(impact.no_paper.clone().unwrap_or_default()))?;
                 Ok(column.deviation.total / impact.amplitude())
             }
             "energy_speed" | "energy_penetration" | "energy_duration" => {
@@ -450,11 +491,14 @@ impl Scope<'_, '_> {
             }
             _ if name.starts_with("paper_") && is_a_name(name) => {
                 let phases = self.phases(name, ContactSpeed::Paper)?;
-                of_phases(name, &phases).ok_or_else(|| Lack::Refused("the approach is no cosine".to_owned()))
+                of_phases(name, &phases)
+                    .ok_or_else(|| Lack::Refused("the approach is no cosine".to_owned()))
             }
             _ if name.starts_with("true_") && is_a_name(name) => {
                 let numbers = self.impact()?.truth.quantities();
-                let place = QUANTITIES_OF_AN_IMPACT.iter().position(|known| name.ends_with(known));
+                let place = QUANTITIES_OF_AN_IMPACT
+                    .iter()
+                    .position(|known| name.ends_with(known));
                 Ok(place.map_or(f64::NAN, |place| numbers[place]))
             }
             _ => Err(missing(name)),
@@ -464,7 +508,8 @@ impl Scope<'_, '_> {
     fn frequency(&mut self) -> Result<f64, Lack> {
         let (equation, solution) = self.evaluator.law()?;
         let numbers = self.all(&needed_values(solution))?;
-        let square = frequency_squared_of(equation, solution, &numbers).map_err(|error| refused(&error))?;
+        let square =
+            frequency_squared_of(equation, solution, &numbers).map_err(|error| refused(&error))?;
         match square > 0.0 {
             true => Ok(square.sqrt()),
             false => Err(Lack::Refused(format!(
@@ -480,7 +525,8 @@ impl Scope<'_, '_> {
         let (equation, solution) = self.evaluator.law()?;
         let numbers = self.all(&needed_values(solution))?;
         let at = exact(&numbers)?;
-        judge_to(equation, solution, &at, DEFAULT_TOLERANCE, Extent::Motion).map_err(|error| refused(&error))
+        judge_to(equation, solution, &at, DEFAULT_TOLERANCE, Extent::Motion)
+            .map_err(|error| refused(&error))
     }
 
     /// The three phases of an impact with a line for the barrier.
@@ -497,8 +543,11 @@ impl Scope<'_, '_> {
             .collect();
         let numbers = self.all(&needed)?;
         let number = |name: &str| numbers.get(&Symbol::new(name)).copied().unwrap_or(f64::NAN);
-        let square = frequency_squared_of(equation, law, &numbers).map_err(|error| refused(&error))?;
-        let compiled = |expr: &Expr| CompiledFunction::new(expr, &arguments(equation)).map_err(|error| refused(&error));
+        let square =
+            frequency_squared_of(equation, law, &numbers).map_err(|error| refused(&error))?;
+        let compiled = |expr: &Expr| {
+            CompiledFunction::new(expr, &arguments(equation)).map_err(|error| refused(&error))
+        };
         let slope = equation
             .force
             .differentiate(equation.coordinate)
@@ -622,14 +671,17 @@ impl Scope<'_, '_> {
             stop_at_rest: true,
             ..Settings::default()
         };
-        let found = course(&model, start, Integrator::Taylor, &settings).map_err(|error| refused(&error))?;
+        let found = course(&model, start, Integrator::Taylor, &settings)
+            .map_err(|error| refused(&error))?;
         found.rest_time.map_err(|reason| refused(&reason))
     }
 }
 
-/// The equation of motion of x that follows from these energies and this force, over what stands before x''.
+/// The equation of motion of x that follows from these energies and this force, over what stands
+/// before x''.
 fn motion(parts: [&Expr; 3], definitions: &BTreeMap<Symbol, Expr>) -> Result<Expr, String> {
-    let [kinetic, potential, force] = parts.map(|part| identity::with_definitions(part, definitions));
+    let [kinetic, potential, force] =
+        parts.map(|part| identity::with_definitions(part, definitions));
     let x = Symbol::new("x");
     let mechanism = Mechanism {
         coordinates: vec![x],
@@ -641,7 +693,9 @@ fn motion(parts: [&Expr; 3], definitions: &BTreeMap<Symbol, Expr>) -> Result<Exp
     let equations = mechanism.equations().map_err(|error| error.to_string())?;
     let words = |error: ExprError| error.to_string();
     let left = &equations.left[0];
-    let inertia = left.differentiate(x.derivative().derivative()).map_err(words)?;
+    let inertia = left
+        .differentiate(x.derivative().derivative())
+        .map_err(words)?;
     Expr::divide(left, &inertia)
         .and_then(|left| left.expand())
         .map_err(words)
@@ -654,7 +708,13 @@ const LONGEST: f64 = 2000.0;
 const LONGEST_OF_A_MAIN_MASS: f64 = 1000.0;
 
 /// The numbers of an impact in the order of [`ThreePhases::quantities`].
-const QUANTITIES_OF_AN_IMPACT: [&str; 5] = ["_time_to_contact", "_speed", "_penetration", "_duration", "_period"];
+const QUANTITIES_OF_AN_IMPACT: [&str; 5] = [
+    "_time_to_contact",
+    "_speed",
+    "_penetration",
+    "_duration",
+    "_period",
+];
 
 /// Whether the program computes something under this name.
 pub(super) fn is_a_name(name: &str) -> bool {
@@ -663,14 +723,18 @@ pub(super) fn is_a_name(name: &str) -> bool {
 
 fn of_phases(name: &str, phases: &ThreePhases) -> Option<f64> {
     let cosine = |index: usize| match phases.phases[index].form {
-        Form::Cosine { frequency, phase, .. } => Some((frequency, phase)),
+        Form::Cosine {
+            frequency, phase, ..
+        } => Some((frequency, phase)),
         _ => None,
     };
     match name {
         "paper_frequency" => Some(cosine(0)?.0),
         "paper_phase" => Some(cosine(2)?.1),
         _ => {
-            let place = QUANTITIES_OF_AN_IMPACT.iter().position(|known| name.ends_with(known))?;
+            let place = QUANTITIES_OF_AN_IMPACT
+                .iter()
+                .position(|known| name.ends_with(known))?;
             Some(phases.quantities()[place])
         }
     }
@@ -686,7 +750,8 @@ fn arguments(equation: &Oscillator) -> Vec<Symbol> {
 fn exact(numbers: &BTreeMap<Symbol, f64>) -> Result<Values, Lack> {
     let mut values = Values::default();
     for (name, number) in numbers {
-        let number = from_f64(*number).ok_or_else(|| Lack::Refused(format!("`{name}` is no number")))?;
+        let number =
+            from_f64(*number).ok_or_else(|| Lack::Refused(format!("`{name}` is no number")))?;
         values
             .insert(*name, Expr::number(number))
             .map_err(|error| refused(&error))?;

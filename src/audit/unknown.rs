@@ -1,7 +1,9 @@
-//! A number that is not printed, solved for: which values of it make a claim come out, and whether several claims can share one.
+//! A number that is not printed, solved for: which values of it make a claim come out, and whether
+//! several claims can share one.
 //!
-//! The values are looked for on a grid, by equal ratios where the range is positive, and between two points of it where what is
-//! computed passes what is printed; the ends of the range that reproduces are found by bisection. The first such range is taken.
+//! The values are looked for on a grid, by equal ratios where the range is positive, and between
+//! two points of it where what is computed passes what is printed; the ends of the range that
+//! reproduces are found by bisection. The first such range is taken.
 
 use super::claim::Unknown;
 use crate::numeric::ode::root::{Until, bisect, find_root};
@@ -24,8 +26,8 @@ const POINTS: usize = 120;
 /// How far beyond a range of positive numbers is looked for what a claim would need, as a factor.
 const BEYOND: f64 = 1e15;
 
-/// What is asked of one value of the unknown: whether all that is printed comes out, and by how much each number of it differs from
-/// what is printed; no number where there is none.
+/// What is asked of one value of the unknown: whether all that is printed comes out, and by how
+/// much each number of it differs from what is printed; no number where there is none.
 pub(super) struct Trial {
     pub(super) reproduces: bool,
     pub(super) differences: Vec<f64>,
@@ -41,7 +43,10 @@ pub(super) fn solve(unknown: Unknown, try_value: &dyn Fn(f64) -> Trial) -> Optio
     };
     let grid = |from: f64, to: f64| -> Vec<f64> {
         let inner = (1..POINTS).map(|point| place(from, to, point as f64 / POINTS as f64));
-        std::iter::once(from).chain(inner).chain(std::iter::once(to)).collect()
+        std::iter::once(from)
+            .chain(inner)
+            .chain(std::iter::once(to))
+            .collect()
     };
     let [below, above] = match by_ratio {
         true => [low / BEYOND, high * BEYOND],
@@ -71,16 +76,27 @@ pub(super) fn solve(unknown: Unknown, try_value: &dyn Fn(f64) -> Trial) -> Optio
 fn first(grid: &[f64], try_value: &dyn Fn(f64) -> Trial) -> Option<(f64, [f64; 2])> {
     let trials: Vec<Trial> = grid.iter().map(|value| try_value(*value)).collect();
     for (index, trial) in trials.iter().enumerate() {
-        let neighbours = [grid[index.saturating_sub(1)], grid[(index + 1).min(grid.len() - 1)]];
+        let neighbours = [
+            grid[index.saturating_sub(1)],
+            grid[(index + 1).min(grid.len() - 1)],
+        ];
         if trial.reproduces {
             return Some(range_about(grid[index], neighbours, try_value));
         }
-        let Some(next) = trials.get(index + 1) else { continue };
+        let Some(next) = trials.get(index + 1) else {
+            continue;
+        };
         for (entry, pair) in trial.differences.iter().zip(&next.differences).enumerate() {
             if !(pair.0.is_finite() && pair.1.is_finite() && pair.0 * pair.1 < 0.0) {
                 continue;
             }
-            let difference = |value: f64| try_value(value).differences.get(entry).copied().unwrap_or(f64::NAN);
+            let difference = |value: f64| {
+                try_value(value)
+                    .differences
+                    .get(entry)
+                    .copied()
+                    .unwrap_or(f64::NAN)
+            };
             let Ok(root) = find_root(difference, grid[index], grid[index + 1]) else {
                 continue;
             };
@@ -92,8 +108,13 @@ fn first(grid: &[f64], try_value: &dyn Fn(f64) -> Trial) -> Option<(f64, [f64; 2
     None
 }
 
-/// The ends of the values that reproduce about one that does, no further than these neighbours but for those that reproduce too.
-fn range_about(value: f64, neighbours: [f64; 2], try_value: &dyn Fn(f64) -> Trial) -> (f64, [f64; 2]) {
+/// The ends of the values that reproduce about one that does, no further than these neighbours but
+/// for those that reproduce too.
+fn range_about(
+    value: f64,
+    neighbours: [f64; 2],
+    try_value: &dyn Fn(f64) -> Trial,
+) -> (f64, [f64; 2]) {
     let reproduces = |value: f64| try_value(value).reproduces;
     let end = |neighbour: f64| {
         let (mut inside, mut outside) = (value, neighbour);
@@ -117,7 +138,8 @@ fn range_about(value: f64, neighbours: [f64; 2], try_value: &dyn Fn(f64) -> Tria
     (value, [low, high])
 }
 
-/// The value in a range that gives what is printed itself, where there is one number and it does; else the one that is known.
+/// The value in a range that gives what is printed itself, where there is one number and it does;
+/// else the one that is known.
 fn nearest(known: f64, range: [f64; 2], try_value: &dyn Fn(f64) -> Trial) -> f64 {
     let difference = |value: f64| match try_value(value).differences[..] {
         [difference] => difference,
@@ -128,8 +150,14 @@ fn nearest(known: f64, range: [f64; 2], try_value: &dyn Fn(f64) -> Trial) -> f64
 
 /// What all of these ranges have in common.
 pub(super) fn in_common(ranges: &[[f64; 2]]) -> Option<[f64; 2]> {
-    let low = ranges.iter().map(|range| range[0]).fold(f64::NEG_INFINITY, f64::max);
-    let high = ranges.iter().map(|range| range[1]).fold(f64::INFINITY, f64::min);
+    let low = ranges
+        .iter()
+        .map(|range| range[0])
+        .fold(f64::NEG_INFINITY, f64::max);
+    let high = ranges
+        .iter()
+        .map(|range| range[1])
+        .fold(f64::INFINITY, f64::min);
     (low <= high).then_some([low, high])
 }
 
@@ -137,7 +165,12 @@ pub(super) fn in_common(ranges: &[[f64; 2]]) -> Option<[f64; 2]> {
 mod tests {
     use super::*;
 
-    fn demand(within: [f64; 2], function: impl Fn(f64) -> f64, printed: f64, half: f64) -> Option<Demand> {
+    fn demand(
+        within: [f64; 2],
+        function: impl Fn(f64) -> f64,
+        printed: f64,
+        half: f64,
+    ) -> Option<Demand> {
         let unknown = Unknown {
             name: "u".into(),
             within,

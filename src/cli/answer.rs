@@ -1,4 +1,5 @@
-//! A result in the format that was asked for: what every command has in common once its work is done.
+//! A result in the format that was asked for: what every command has in common once its work is
+//! done.
 
 use std::path::PathBuf;
 
@@ -30,7 +31,9 @@ impl Answer<'_> {
         let text = match common.format() {
             Format::Text => printable(&text::document(self.document, self.width)),
             Format::Latex => printable(&latex::document(self.document)),
-            Format::Html => printable(&page(self.picture, None, |page| html::document(self.document, page))),
+            Format::Html => printable(&page(self.picture, None, |page| {
+                html::document(self.document, page)
+            })),
             Format::Svg => drawn(self.picture)?,
             format => (self.other)(format)?,
         };
@@ -45,7 +48,10 @@ impl Answer<'_> {
 }
 
 /// The picture of `--plot` and its place, where there is one.
-pub(super) fn pictured(common: &Common, picture: Option<Draw>) -> Option<(PathBuf, Result<String, Failure>)> {
+pub(super) fn pictured(
+    common: &Common,
+    picture: Option<Draw>,
+) -> Option<(PathBuf, Result<String, Failure>)> {
     Some((common.plot.clone()?, picture?()))
 }
 
@@ -57,7 +63,8 @@ pub(super) fn drawn(picture: Option<Draw>) -> Result<String, Failure> {
     }
 }
 
-/// The page that `write` makes, with its picture and the command that made it. A page without a picture says why there is none.
+/// The page that `write` makes, with its picture and the command that made it. A page without a
+/// picture says why there is none.
 pub(super) fn page(
     picture: Option<Draw>,
     derivation: Option<(&Solution, bool)>,
@@ -90,7 +97,9 @@ fn what_is_asked(words: &[String]) -> Vec<String> {
     let mut asked = Vec::new();
     let mut words = words.iter();
     while let Some(word) = words.next() {
-        let option = word.split_once('=').map_or(word.as_str(), |(option, _)| option);
+        let option = word
+            .split_once('=')
+            .map_or(word.as_str(), |(option, _)| option);
         if !HANDED_ON.contains(&option) {
             asked.push(word.clone());
         } else if option == word {
@@ -125,7 +134,9 @@ pub(super) fn no_such<T>(format: Format) -> Result<T, Failure> {
             "picture",
             "`lindstedt derive`, `compare`, `impact`, `simulate`, `response`, `stability`, `friction`, `materials` or `optimize`",
         ),
-        Format::Text | Format::Latex | Format::Json | Format::Html => ("result in this format", "other commands"),
+        Format::Text | Format::Latex | Format::Json | Format::Html => {
+            ("result in this format", "other commands")
+        }
     };
     Err(Failure::Usage(format!(
         "there is no {what} here: --format {} belongs to {has_it}",

@@ -88,11 +88,13 @@ fn outcome(claims: &str, name: &str, own: &Own, common: &Common) -> Result<Outco
         ));
     }
     if common.plot.is_some() {
-        return Err(Failure::Usage("--plot: an audit draws no picture".to_owned()));
+        return Err(Failure::Usage(
+            "--plot: an audit draws no picture".to_owned(),
+        ));
     }
-    let claims: Claims = claims
-        .parse()
-        .map_err(|error: ClaimsError| Failure::refused(&format!("{name}: {error}"), error.help()))?;
+    let claims: Claims = claims.parse().map_err(|error: ClaimsError| {
+        Failure::refused(&format!("{name}: {error}"), error.help())
+    })?;
     let audit = audit(claims);
     let answer = Answer {
         document: &report::audit(&audit),

@@ -11,7 +11,9 @@ use lindstedt::expr::parse_expression;
 use lindstedt::method::with_resonance_at;
 use lindstedt::report::{self, AnyCertificate, CertificateReport};
 use lindstedt::verify::Verdict;
-use lindstedt::{Interrupt, Method, Options, Oscillator, Progress, Solution, Supervision, Values, solve};
+use lindstedt::{
+    Interrupt, Method, Options, Oscillator, Progress, Solution, Supervision, Values, solve,
+};
 use num_traits::Signed as _;
 
 use super::answer::{Answer, no_such};
@@ -27,8 +29,8 @@ use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, read_at_mos
 pub struct Arguments {
     #[command(flatten)]
     pub question: Question,
-    /// Positive amplitudes, 1/10:3 say: how far from the first of them on the formula is proved to be within the tolerance, for every
-    /// amplitude
+    /// Positive amplitudes, 1/10:3 say: how far from the first of them on the formula is proved to
+    /// be within the tolerance, for every amplitude
     #[arg(long, value_name = "LOW:HIGH", value_parser = range)]
     range: Option<(Rational, Rational)>,
     /// Prove the motion alone, and judge no formula: where that has no real value, say
@@ -57,10 +59,19 @@ const LARGEST_CERTIFICATE: usize = 16 << 20;
 
 /// Two positive numbers, the smaller one first.
 fn range(text: &str) -> Result<(Rational, Rational), String> {
-    let end = |text: &str| parse_expression(text).ok().and_then(|value| value.as_number().cloned());
-    let ends = text.split_once(':').and_then(|(low, high)| end(low).zip(end(high)));
+    let end = |text: &str| {
+        parse_expression(text)
+            .ok()
+            .and_then(|value| value.as_number().cloned())
+    };
+    let ends = text
+        .split_once(':')
+        .and_then(|(low, high)| end(low).zip(end(high)));
     ends.filter(|(low, high)| low.is_positive() && low < high)
-        .ok_or_else(|| "expected two positive fractions or decimals, the smaller one first, such as 1/10:3".to_owned())
+        .ok_or_else(|| {
+            "expected two positive fractions or decimals, the smaller one first, such as 1/10:3"
+                .to_owned()
+        })
 }
 
 impl Work for Arguments {
@@ -81,7 +92,8 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     without_picture(&arguments.common)?;
     if arguments.range.is_some() && arguments.common.format() == Format::Json {
         return Err(Failure::Usage(
-            "--range is not in a certificate, which is of one amplitude: print it as text".to_owned(),
+            "--range is not in a certificate, which is of one amplitude: print it as text"
+                .to_owned(),
         ));
     }
     derive::with_motion(&arguments.question, &[("a certificate", true)])?;
@@ -92,7 +104,8 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         ..
     } = derive::solved(&arguments.question, Names::Changed)?;
     let values = values.unwrap_or_default();
-    // A proof of a driven motion is of the steady one alone, whose formula is that of slow equations.
+    // A proof of a driven motion is of the steady one alone, whose formula is that of slow
+    // equations.
     let solution = match solution.in_time() {
         Some(_) => steady_formula(&oscillator, &values).unwrap_or(solution),
         None => solution,
@@ -128,7 +141,14 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     };
     let validity = arguments.range.as_ref().map(|(low, high)| {
         with_progress("of the range", || {
-            certificate::validity(&oscillator, &solution, &values, [low, high], tolerance, supervision)
+            certificate::validity(
+                &oscillator,
+                &solution,
+                &values,
+                [low, high],
+                tolerance,
+                supervision,
+            )
         })
     });
     let validity = validity.transpose().map_err(|error| refused(&error))?;
@@ -166,7 +186,8 @@ fn without_amplitude(
             "--range is of amplitudes, and {kind} has one of its own\n  help: leave --range out: the proof is of the motion at these values"
         )));
     }
-    let (certificate, certified) = proved().map_err(|error| Failure::refused(&error, error.help()))?;
+    let (certificate, certified) =
+        proved().map_err(|error| Failure::refused(&error, error.help()))?;
     let report = CertificateReport {
         question: Some((solution, values)),
         certificate: (&certificate).into(),
@@ -206,11 +227,13 @@ fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
     let (motion, damped);
     let of_damped = [json::EQUATION_OF_CYCLES, json::EQUATION_WITH_DRIVE];
     let (certificate, certified): (AnyCertificate, _) = if of_damped.contains(&ode.as_str()) {
-        let document: DampedCertificateDocument = serde_json::from_str(&text).map_err(|error| unread(&error))?;
+        let document: DampedCertificateDocument =
+            serde_json::from_str(&text).map_err(|error| unread(&error))?;
         damped = document.read().map_err(|error| unread(&error))?;
         ((&damped).into(), certificate::check_damped(&damped))
     } else {
-        let document: CertificateDocument = serde_json::from_str(&text).map_err(|error| unread(&error))?;
+        let document: CertificateDocument =
+            serde_json::from_str(&text).map_err(|error| unread(&error))?;
         motion = document.read().map_err(|error| unread(&error))?;
         ((&motion).into(), certificate::check(&motion))
     };
@@ -235,7 +258,8 @@ fn without_picture(common: &Common) -> Result<(), Failure> {
     match common.plot {
         None => Ok(()),
         Some(_) => Err(Failure::Refused(
-            "a proof has no picture\n  help: `derive` draws the formula beside the true motion".to_owned(),
+            "a proof has no picture\n  help: `derive` draws the formula beside the true motion"
+                .to_owned(),
         )),
     }
 }
@@ -248,7 +272,9 @@ fn printed(report: &CertificateReport, common: &Common) -> Result<Outcome, Failu
         other: &|format| match format {
             Format::Json => match report.certificate {
                 AnyCertificate::Motion(certificate) => json_text(&json::certificate(certificate)),
-                AnyCertificate::Damped(certificate) => json_text(&json::damped_certificate(certificate)),
+                AnyCertificate::Damped(certificate) => {
+                    json_text(&json::damped_certificate(certificate))
+                }
             },
             format => no_such(format),
         },

@@ -26,8 +26,8 @@ pub struct Arguments {
     /// The small parameter; A for the amplitude
     #[arg(long, value_name = "NAME")]
     small: Option<String>,
-    /// The equilibrium to swing about, x=1 say: a stable one, without this the nearest to zero, or an unstable one between two wells
-    /// for motions over both
+    /// The equilibrium to swing about, x=1 say: a stable one, without this the nearest to zero, or
+    /// an unstable one between two wells for motions over both
     #[arg(long, value_name = "NAME=VALUE")]
     about: Option<String>,
     #[command(flatten)]
@@ -51,7 +51,10 @@ impl Work for Arguments {
 fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Compare)?;
-    let (oscillator, renamed) = named(&oscillator(&formula, arguments.about.as_deref())?, Names::Kept)?;
+    let (oscillator, renamed) = named(
+        &oscillator(&formula, arguments.about.as_deref())?,
+        Names::Kept,
+    )?;
     let letters = oscillator.letters();
     let _letters = letters.in_force();
     let coordinate = oscillator.coordinate;
@@ -68,19 +71,27 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             .map_err(|error| Failure::advised(&error, error.help()))?;
     }
     let tolerance = tolerance(&arguments.common);
-    let comparison = comparison::compare(&oscillator, &values, small, tolerance).map_err(|error| match &error {
-        comparison::ComparisonError::NoMethod(refused) => {
-            Failure::advised(&error, refused.first().and_then(|first| first.reason.help()))
-        }
-        comparison::ComparisonError::Verification(verify::VerificationError::Missing(names)) => {
-            let example: Vec<String> = names.iter().map(|name| format!("--at {name}=...")).collect();
-            Failure::refused(&error, Some(format!("add {}", example.join(" "))))
-        }
-        comparison::ComparisonError::Verification(verify::VerificationError::Unknown { .. }) => {
-            Failure::Usage(error.to_string())
-        }
-        _ => Failure::refused(&error, None),
-    })?;
+    let comparison = comparison::compare(&oscillator, &values, small, tolerance).map_err(
+        |error| match &error {
+            comparison::ComparisonError::NoMethod(refused) => Failure::advised(
+                &error,
+                refused.first().and_then(|first| first.reason.help()),
+            ),
+            comparison::ComparisonError::Verification(verify::VerificationError::Missing(
+                names,
+            )) => {
+                let example: Vec<String> = names
+                    .iter()
+                    .map(|name| format!("--at {name}=..."))
+                    .collect();
+                Failure::refused(&error, Some(format!("add {}", example.join(" "))))
+            }
+            comparison::ComparisonError::Verification(verify::VerificationError::Unknown {
+                ..
+            }) => Failure::Usage(error.to_string()),
+            _ => Failure::refused(&error, None),
+        },
+    )?;
     let answer = Answer {
         document: &report::comparison(&comparison),
         width: files::width(arguments.common.output.as_deref()),
@@ -90,9 +101,13 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             format => no_such(format),
         },
     };
-    let passed = comparison.rows.iter().all(|row| row.verdict == Some(Verdict::Pass));
+    let passed = comparison
+        .rows
+        .iter()
+        .all(|row| row.verdict == Some(Verdict::Pass));
     let of_letters = comparison.rows.first();
-    let of_letters = of_letters.map(|row| notes_on_letters(&letters, coordinate, &row.solution, true));
+    let of_letters =
+        of_letters.map(|row| notes_on_letters(&letters, coordinate, &row.solution, true));
     let notes = notes.into_iter().chain(of_letters.into_iter().flatten());
     let notes: Vec<String> = notes.map(|note| format!("note: {note}")).collect();
     Ok(Outcome {
@@ -111,8 +126,8 @@ fn picture(_: &Oscillator, _: &Comparison) -> Result<String, Failure> {
 fn picture(oscillator: &Oscillator, comparison: &Comparison) -> Result<String, Failure> {
     use lindstedt::export::figure::backbone_figure;
 
-    let (truth, curves) =
-        comparison::backbones(oscillator, comparison).map_err(|error| Failure::refused(&error, None))?;
+    let (truth, curves) = comparison::backbones(oscillator, comparison)
+        .map_err(|error| Failure::refused(&error, None))?;
     let at: Vec<String> = comparison
         .at
         .iter()
@@ -120,5 +135,6 @@ fn picture(oscillator: &Oscillator, comparison: &Comparison) -> Result<String, F
         .collect();
     let caption = format!("{}; {}", comparison.equation, at.join(", "));
     let marked = comparison.at.get("A".into()).map(f64::abs);
-    backbone_figure(&truth, &curves, marked, &caption).map_err(|error| Failure::refused(&error, None))
+    backbone_figure(&truth, &curves, marked, &caption)
+        .map_err(|error| Failure::refused(&error, None))
 }

@@ -14,7 +14,9 @@ use lindstedt::method::table::{Choice, Entry, that_take};
 use lindstedt::method::{self, Options, Refusal, Unsuited};
 use lindstedt::problem::{Formula, Order, Problem, ProblemError, Reader};
 use lindstedt::report;
-use lindstedt::solution::{AmplitudeConvention, Counts, Degrees, Method, Modulation, Note, Solution};
+use lindstedt::solution::{
+    AmplitudeConvention, Counts, Degrees, Method, Modulation, Note, Solution,
+};
 use lindstedt::verify::{self, VerificationError};
 use lindstedt::{Interrupt, Oscillator, Progress, Supervision, Symbol};
 
@@ -28,13 +30,14 @@ use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, tolerance, 
 pub struct Question {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     pub problem: String,
-    /// How to derive: lindstedt-poincare, homotopy-perturbation, homotopy-analysis, iteration-perturbation,
-    /// parameter-expansion, harmonic-balance, energy-balance, max-min, amplitude-frequency, hamiltonian,
-    /// variational-iteration, frequency-formula, averaging, pade, hermite-pade, multiple-scales or exact
+    /// How to derive: lindstedt-poincare, homotopy-perturbation, homotopy-analysis,
+    /// iteration-perturbation, parameter-expansion, harmonic-balance, energy-balance, max-min,
+    /// amplitude-frequency, hamiltonian, variational-iteration, frequency-formula, averaging, pade,
+    /// hermite-pade, multiple-scales or exact
     #[arg(long)]
     method: Option<String>,
-    /// Highest power of the small parameter kept, inclusive; harmonics of harmonic-balance; degrees L,M of pade,
-    /// P,Q,R of hermite-pade
+    /// Highest power of the small parameter kept, inclusive; harmonics of harmonic-balance; degrees
+    /// L,M of pade, P,Q,R of hermite-pade
     #[arg(long, value_parser = order, allow_hyphen_values = true)]
     order: Option<Order>,
     /// What the amplitude measures
@@ -43,20 +46,23 @@ pub struct Question {
     /// The small parameter; A for the amplitude
     #[arg(long, value_name = "NAME")]
     small: Option<String>,
-    /// The equilibrium to swing about, x=1 say: a stable one, without this the nearest to zero, or an unstable one between two wells
-    /// for motions over both
+    /// The equilibrium to swing about, x=1 say: a stable one, without this the nearest to zero, or
+    /// an unstable one between two wells for motions over both
     #[arg(long, value_name = "NAME=VALUE")]
     about: Option<String>,
     /// Degree of the Taylor polynomial that homotopy perturbation puts for the force
     #[arg(long, value_name = "DEGREE", value_parser = super::count, allow_hyphen_values = true)]
     taylor: Option<u32>,
-    /// The convergence-control parameter of homotopy-analysis, exact; without it the best one is chosen at the values
+    /// The convergence-control parameter of homotopy-analysis, exact; without it the best one is
+    /// chosen at the values
     #[arg(long, allow_hyphen_values = true, value_name = "VALUE")]
     hbar: Option<String>,
-    /// Which limit cycle of a self-excited equation, counted from 1 by amplitude; without it the smallest that attracts
+    /// Which limit cycle of a self-excited equation, counted from 1 by amplitude; without it the
+    /// smallest that attracts
     #[arg(long, value_name = "N", value_parser = super::count, allow_hyphen_values = true)]
     cycle: Option<u32>,
-    /// Which resonance of a driven equation, Omega:omega0, 1:3 say; without it the one nearest to the values, or 1:1
+    /// Which resonance of a driven equation, Omega:omega0, 1:3 say; without it the one nearest to
+    /// the values, or 1:1
     #[arg(long, value_name = "P:Q", value_parser = ratio)]
     resonance: Option<(u32, u32)>,
     /// The frequency without the motion, of lindstedt-poincare: orders up to 2000, in less time
@@ -75,7 +81,8 @@ pub struct Question {
 pub struct Arguments {
     #[command(flatten)]
     pub question: Question,
-    /// Print the derivation, order by order, before the result; in JSON as `derivation`, in a program as a comment
+    /// Print the derivation, order by order, before the result; in JSON as `derivation`, in a
+    /// program as a comment
     #[arg(long)]
     steps: bool,
     #[command(flatten)]
@@ -84,19 +91,32 @@ pub struct Arguments {
 
 /// The names of the conventions, and the convention of each.
 fn convention() -> impl TypedValueParser<Value = AmplitudeConvention> {
-    let names = [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic].map(AmplitudeConvention::name);
+    let names = [
+        AmplitudeConvention::Initial,
+        AmplitudeConvention::FirstHarmonic,
+    ]
+    .map(AmplitudeConvention::name);
     let unknown = || "no convention of this name".to_owned();
-    PossibleValuesParser::new(names).try_map(move |name| AmplitudeConvention::from_name(&name).ok_or_else(unknown))
+    PossibleValuesParser::new(names)
+        .try_map(move |name| AmplitudeConvention::from_name(&name).ok_or_else(unknown))
 }
 
 /// A ratio of two whole numbers, `1:3`, in lowest terms.
 fn ratio(text: &str) -> Result<(u32, u32), String> {
     let parts = text.split_once(':').and_then(|(above, below)| {
-        let part = |text: &str| text.trim().parse::<u32>().ok().filter(|part| (1..=9).contains(part));
+        let part = |text: &str| {
+            text.trim()
+                .parse::<u32>()
+                .ok()
+                .filter(|part| (1..=9).contains(part))
+        };
         part(above).zip(part(below))
     });
     let (above, below) = parts.ok_or("expected two whole numbers from 1 to 9, such as 1:3")?;
-    let common = (1..=9).rev().find(|k| above % k == 0 && below % k == 0).unwrap_or(1);
+    let common = (1..=9)
+        .rev()
+        .find(|k| above % k == 0 && below % k == 0)
+        .unwrap_or(1);
     Ok((above / common, below / common))
 }
 
@@ -114,12 +134,15 @@ fn order(text: &str) -> Result<Order, String> {
         [order] => Ok(Order::Power(order)),
         _ => {
             let degrees = Degrees::of(&numbers).map(Order::Degrees);
-            degrees.ok_or_else(|| "expected a whole number, or the degrees of an approximant".to_owned())
+            degrees.ok_or_else(|| {
+                "expected a whole number, or the degrees of an approximant".to_owned()
+            })
         }
     }
 }
 
-/// An answer, with the equation that it is of and the values that are left once those that the equation needs stand in it.
+/// An answer, with the equation that it is of and the values that are left once those that the
+/// equation needs stand in it.
 pub(super) struct Solved {
     pub oscillator: Oscillator,
     pub values: Option<Values>,
@@ -137,7 +160,8 @@ pub(super) enum Names {
     Changed,
 }
 
-/// The answer to a question, with the oscillator and the values that are left once those that the equation needs stand in it.
+/// The answer to a question, with the oscillator and the values that are left once those that the
+/// equation needs stand in it.
 pub(super) fn solved(arguments: &Question, names: Names) -> Result<Solved, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Derive)?;
@@ -158,7 +182,9 @@ pub(super) fn solved(arguments: &Question, names: Names) -> Result<Solved, Failu
         mut notes,
     } = with_values(oscillator, &renamed, &arguments.at, &problem)?;
     // A name that is no function may be why the equation is refused.
-    let misleading = notes.iter().filter(|note| matches!(note, Note::Misleading { .. }));
+    let misleading = notes
+        .iter()
+        .filter(|note| matches!(note, Note::Misleading { .. }));
     let misleading: Vec<String> = misleading.map(Note::to_string).collect();
     let options = match &values {
         Some(values) => method::with_resonance_at(&oscillator, &options, values)
@@ -170,7 +196,12 @@ pub(super) fn solved(arguments: &Question, names: Names) -> Result<Solved, Failu
             let _letters = letters.in_force();
             let (oscillator, values, mut solution) = solve_at(oscillator, values, &options)?;
             solution.convergence = verify::converges(&solution);
-            notes.extend(notes_on_letters(&letters, coordinate, &solution, values.is_some()));
+            notes.extend(notes_on_letters(
+                &letters,
+                coordinate,
+                &solution,
+                values.is_some(),
+            ));
             solution.validity.extend(notes);
             let everywhere = verify::converges_everywhere(&solution);
             solution.validity.extend(everywhere);
@@ -198,16 +229,20 @@ fn unjudged(error: &VerificationError) -> Failure {
             let help = near.map(|near| format!("\n  help: did you mean `{near}`?"));
             Failure::Usage(format!("--at: {error}{}", help.unwrap_or_default()))
         }
-        VerificationError::Missing(names) => {
-            Failure::refused(error, names.first().map(|name| format!("--at {name}=VALUE")))
-        }
+        VerificationError::Missing(names) => Failure::refused(
+            error,
+            names.first().map(|name| format!("--at {name}=VALUE")),
+        ),
         VerificationError::OffCycle => Failure::refused(
             error,
             Some("--method averaging follows the motion from A to the cycle".to_owned()),
         ),
         VerificationError::NeverRepeats => Failure::refused(
             error,
-            Some("leave the values out; `lindstedt simulate` follows the motion from any start".to_owned()),
+            Some(
+                "leave the values out; `lindstedt simulate` follows the motion from any start"
+                    .to_owned(),
+            ),
         ),
         _ => Failure::refused(error, None),
     }
@@ -215,7 +250,10 @@ fn unjudged(error: &VerificationError) -> Failure {
 
 /// Refuses what asks for the motion where it is left out.
 pub(super) fn with_motion(question: &Question, of_motion: &[(&str, bool)]) -> Result<(), Failure> {
-    match of_motion.iter().find(|(_, given)| question.omega_only && *given) {
+    match of_motion
+        .iter()
+        .find(|(_, given)| question.omega_only && *given)
+    {
         Some((what, _)) => Err(Failure::Usage(format!(
             "{what} asks for the motion, which --omega-only leaves out"
         ))),
@@ -252,15 +290,23 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     } = solved(&arguments.question, Names::Kept)?;
     let _letters = letters.in_force();
     let tolerance = tolerance(&arguments.common);
-    let judged = values.is_some() || arguments.common.draws() || arguments.common.tolerance.is_some();
+    let judged =
+        values.is_some() || arguments.common.draws() || arguments.common.tolerance.is_some();
     let verification = match judged {
         false => None,
         true => {
-            let judged = verify::judge(&oscillator, &solution, &values.unwrap_or_default(), tolerance);
+            let judged = verify::judge(
+                &oscillator,
+                &solution,
+                &values.unwrap_or_default(),
+                tolerance,
+            );
             Some(judged.map_err(|error| unjudged(&error))?)
         }
     };
-    let place = verification.as_ref().filter(|_| !arguments.question.omega_only);
+    let place = verification
+        .as_ref()
+        .filter(|_| !arguments.question.omega_only);
     let draw = place.map(|verification| || picture(&oscillator, &solution, &verification.at));
     let picture = draw.as_ref().map(|draw| draw as Draw);
     let derivation = match arguments.common.format() {
@@ -293,7 +339,13 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             json_text(&document)?
         }
         Format::Code(language) => {
-            let program = code::solution(&oscillator, &solution, verification.as_ref(), tolerance, language);
+            let program = code::solution(
+                &oscillator,
+                &solution,
+                verification.as_ref(),
+                tolerance,
+                language,
+            );
             let program = program.map_err(|reason| Failure::advised(&reason, reason.help()))?;
             let space = if derivation.is_empty() { "" } else { "\n" };
             language.comment(&(derivation + space)) + &program
@@ -319,7 +371,12 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 
 /// Does the work on so many threads, or on all.
 fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> T {
-    let pool = threads.and_then(|count| rayon::ThreadPoolBuilder::new().num_threads(count.into()).build().ok());
+    let pool = threads.and_then(|count| {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(count.into())
+            .build()
+            .ok()
+    });
     match pool {
         Some(pool) => pool.install(work),
         None => work(),
@@ -334,8 +391,8 @@ pub(super) fn patience() -> Duration {
     }
 }
 
-/// The solution; where a limit cycle depends on the values of parameters, or letters stand in the way, and values are given, that of the
-/// equation with those numbers in it.
+/// The solution; where a limit cycle depends on the values of parameters, or letters stand in the
+/// way, and values are given, that of the equation with those numbers in it.
 fn solve_at(
     oscillator: Oscillator,
     values: Option<Values>,
@@ -359,7 +416,8 @@ fn solve_at(
             let oscillator = oscillator
                 .with_values(&known)
                 .map_err(|error| Failure::advised(&error, error.help()))?;
-            let solution = method::solve(&oscillator, options).map_err(|refusal| refused(&oscillator, &refusal))?;
+            let solution = method::solve(&oscillator, options)
+                .map_err(|refusal| refused(&oscillator, &refusal))?;
             Ok((oscillator, Some(rest), solution))
         }
         _ => Err(refused(&oscillator, &refusal)),
@@ -369,7 +427,9 @@ fn solve_at(
 /// A refusal, with the term that it names shown in the equation.
 pub(super) fn refused(oscillator: &Oscillator, refusal: &Refusal) -> Failure {
     let place = refusal.term().and_then(|term| oscillator.typed.place(term));
-    let shown = place.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));
+    let shown = place.map_or(String::new(), |[line, carets]| {
+        format!("\n  {line}\n  {carets}")
+    });
     Failure::advised(&format!("{refusal}{shown}"), refusal.help())
 }
 
@@ -382,7 +442,8 @@ pub(super) fn formula(problem: &Problem, reader: Reader) -> Result<Formula<'_>, 
 
 /// The oscillator of an equation, about the equilibrium asked for.
 pub(super) fn oscillator(formula: &Formula, about: Option<&str>) -> Result<Oscillator, Failure> {
-    let oscillator = Oscillator::parse(formula.equation).map_err(|error| Failure::advised(&error, error.help()))?;
+    let oscillator = Oscillator::parse(formula.equation)
+        .map_err(|error| Failure::advised(&error, error.help()))?;
     let Some(about) = about.or(formula.about) else {
         return Ok(oscillator);
     };
@@ -391,7 +452,11 @@ pub(super) fn oscillator(formula: &Formula, about: Option<&str>) -> Result<Oscil
     let place = about
         .split_once('=')
         .filter(|(name, _)| name.trim() == x.name())
-        .ok_or_else(|| usage(format!("expected {x}=VALUE, an equilibrium of the coordinate {x}")))?;
+        .ok_or_else(|| {
+            usage(format!(
+                "expected {x}=VALUE, an equilibrium of the coordinate {x}"
+            ))
+        })?;
     let value = parse_expression(place.1).map_err(|error| usage(error.to_string()))?;
     let foreign = value
         .symbols()
@@ -403,23 +468,36 @@ pub(super) fn oscillator(formula: &Formula, about: Option<&str>) -> Result<Oscil
     }
 }
 
-/// The oscillator with the names of its equation that are those of something in an answer kept apart, or with other names for them, and
-/// what was renamed.
-pub(super) fn named(oscillator: &Oscillator, names: Names) -> Result<(Oscillator, Vec<(Symbol, Symbol)>), Failure> {
+/// The oscillator with the names of its equation that are those of something in an answer kept
+/// apart, or with other names for them, and what was renamed.
+pub(super) fn named(
+    oscillator: &Oscillator,
+    names: Names,
+) -> Result<(Oscillator, Vec<(Symbol, Symbol)>), Failure> {
     let named = match names {
-        Names::Kept => oscillator.with_own_names_apart().map(|oscillator| (oscillator, vec![])),
+        Names::Kept => oscillator
+            .with_own_names_apart()
+            .map(|oscillator| (oscillator, vec![])),
         Names::Changed => oscillator.with_names_of_answers_free(),
     };
     named.map_err(|error| Failure::advised(&error, error.help()))
 }
 
-/// Notes on the letters that an answer takes in the place of usual ones, of those that it has; one that is
-/// judged has a frequency.
-pub(super) fn notes_on_letters(letters: &Letters, coordinate: Symbol, solution: &Solution, judged: bool) -> Vec<Note> {
+/// Notes on the letters that an answer takes in the place of usual ones, of those that it has; one
+/// that is judged has a frequency.
+pub(super) fn notes_on_letters(
+    letters: &Letters,
+    coordinate: Symbol,
+    solution: &Solution,
+    judged: bool,
+) -> Vec<Note> {
     let slow = solution.modulation.as_ref();
     let begins = |slow: &Modulation| slow.release.is_some() && !slow.is_conservative();
     let released = slow.is_some_and(begins) || solution.in_time().is_some();
-    let [start, harmonic] = [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic];
+    let [start, harmonic] = [
+        AmplitudeConvention::Initial,
+        AmplitudeConvention::FirstHarmonic,
+    ];
     let stands = |usual: Symbol| {
         if usual == start.symbol() {
             solution.amplitude == start || released
@@ -438,7 +516,8 @@ pub(super) fn notes_on_letters(letters: &Letters, coordinate: Symbol, solution: 
     unusual.map(note).collect()
 }
 
-/// An oscillator with the values that are given, once those that its equilibrium needs stand in its equation.
+/// An oscillator with the values that are given, once those that its equilibrium needs stand in its
+/// equation.
 pub(super) struct Numbered {
     pub oscillator: Oscillator,
     pub values: Option<Values>,
@@ -446,7 +525,8 @@ pub(super) struct Numbered {
     pub notes: Vec<Note>,
 }
 
-/// The oscillator with the values of the command line and of the file, under the names that its parameters have after renaming.
+/// The oscillator with the values of the command line and of the file, under the names that its
+/// parameters have after renaming.
 pub(super) fn with_values(
     oscillator: Oscillator,
     renamed: &[(Symbol, Symbol)],
@@ -466,20 +546,32 @@ pub(super) fn with_values(
     })
 }
 
-/// Notes on the names of parameters: those that are written otherwise, and those without a value that look like something
-/// else.
-fn notes_on_names(oscillator: &Oscillator, values: Option<&Values>, renamed: &[(Symbol, Symbol)]) -> Vec<Note> {
-    let renamed = renamed.iter().map(|&(typed, written)| Note::Renamed { typed, written });
+/// Notes on the names of parameters: those that are written otherwise, and those without a value
+/// that look like something else.
+fn notes_on_names(
+    oscillator: &Oscillator,
+    values: Option<&Values>,
+    renamed: &[(Symbol, Symbol)],
+) -> Vec<Note> {
+    let renamed = renamed
+        .iter()
+        .map(|&(typed, written)| Note::Renamed { typed, written });
     let misleading = oscillator.misleading_parameters().into_iter();
-    let without_value = |(name, _): &(Symbol, String)| values.is_none_or(|values| values.get(*name).is_none());
+    let without_value =
+        |(name, _): &(Symbol, String)| values.is_none_or(|values| values.get(*name).is_none());
     let misleading = misleading
         .filter(without_value)
         .map(|(name, instead)| Note::Misleading { name, instead });
     renamed.chain(misleading).collect()
 }
 
-/// The values under the names that they are meant for, those of renamed parameters under their new ones. Where nothing drives the motion a value of `A` is that of the amplitude.
-fn with_new_names(values: Values, renamed: &[(Symbol, Symbol)], oscillator: &Oscillator) -> Result<Values, Failure> {
+/// The values under the names that they are meant for, those of renamed parameters under their new
+/// ones. Where nothing drives the motion a value of `A` is that of the amplitude.
+fn with_new_names(
+    values: Values,
+    renamed: &[(Symbol, Symbol)],
+    oscillator: &Oscillator,
+) -> Result<Values, Failure> {
     let driven = oscillator.force.contains(Symbol::new("t"));
     let mut renamed_values = Values::default();
     for (name, value) in values.iter() {
@@ -502,7 +594,8 @@ fn with_new_names(values: Values, renamed: &[(Symbol, Symbol)], oscillator: &Osc
     Ok(renamed_values)
 }
 
-/// Where the equilibrium in symbols is not that of the numbers given, the equation with those numbers in it.
+/// Where the equilibrium in symbols is not that of the numbers given, the equation with those
+/// numbers in it.
 fn with_known_equilibrium(
     oscillator: Oscillator,
     values: Option<Values>,
@@ -519,14 +612,21 @@ fn with_known_equilibrium(
     })
 }
 
-fn options(arguments: &Question, formula: &Formula, oscillator: &Oscillator) -> Result<Options, Failure> {
+fn options(
+    arguments: &Question,
+    formula: &Formula,
+    oscillator: &Oscillator,
+) -> Result<Options, Failure> {
     let usage = |message: String| Err(Failure::Usage(message));
     let method = match arguments.method.as_deref().or(formula.method) {
         None => None,
         Some(name) => match Method::from_name(name) {
             Some(method) => Some(method),
             None => {
-                return usage(format!("unknown method `{name}`\n  help: {}", methods_like(name)));
+                return usage(format!(
+                    "unknown method `{name}`\n  help: {}",
+                    methods_like(name)
+                ));
             }
         },
     };
@@ -564,17 +664,33 @@ fn options(arguments: &Question, formula: &Formula, oscillator: &Oscillator) -> 
     }
     let (order, degrees) = match arguments.order.or(formula.order) {
         Some(_) if !entry.takes(Choice::Order) && !entry.takes(Choice::Degrees) => {
-            return without("--order, or `order` in the file,", "the methods that approximate");
+            return without(
+                "--order, or `order` in the file,",
+                "the methods that approximate",
+            );
         }
         Some(Order::Degrees(_)) if !entry.takes(Choice::Degrees) => {
-            return usage(format!("degrees are those of --method {}", that_take(Choice::Degrees)));
+            return usage(format!(
+                "degrees are those of --method {}",
+                that_take(Choice::Degrees)
+            ));
         }
         Some(order) if entry.takes(Choice::Degrees) => match (chosen.counts(), order.degrees()) {
-            (Counts::Degrees(count), Some(degrees)) if degrees.list().len() == count => (None, Some(degrees)),
-            (Counts::Degrees(3), _) => {
-                return usage(format!("--method {} takes three degrees: --order 2,2,2", chosen.name()));
+            (Counts::Degrees(count), Some(degrees)) if degrees.list().len() == count => {
+                (None, Some(degrees))
             }
-            _ => return usage(format!("--method {} takes two degrees: --order 2,1", chosen.name())),
+            (Counts::Degrees(3), _) => {
+                return usage(format!(
+                    "--method {} takes three degrees: --order 2,2,2",
+                    chosen.name()
+                ));
+            }
+            _ => {
+                return usage(format!(
+                    "--method {} takes two degrees: --order 2,1",
+                    chosen.name()
+                ));
+            }
         },
         Some(Order::Degrees(degrees)) => (None, Some(degrees)),
         Some(Order::Power(order)) => (Some(order), None),
@@ -583,15 +699,26 @@ fn options(arguments: &Question, formula: &Formula, oscillator: &Oscillator) -> 
     let hbar = match &arguments.hbar {
         None => None,
         Some(_) if !entry.takes(Choice::Hbar) => {
-            return usage(format!("--hbar belongs to --method {}", that_take(Choice::Hbar)));
+            return usage(format!(
+                "--hbar belongs to --method {}",
+                that_take(Choice::Hbar)
+            ));
         }
         Some(text) => match parse_expression(text) {
             Ok(value) if value.as_number().is_some() => Some(value),
-            Ok(_) => return usage(format!("--hbar {text}: expected a fraction, such as -1 or -4/5")),
+            Ok(_) => {
+                return usage(format!(
+                    "--hbar {text}: expected a fraction, such as -1 or -4/5"
+                ));
+            }
             Err(error) => return usage(format!("--hbar {text}: {error}")),
         },
     };
-    let small = arguments.small.as_deref().or(formula.small).map(str::to_owned);
+    let small = arguments
+        .small
+        .as_deref()
+        .or(formula.small)
+        .map(str::to_owned);
     Ok(Options {
         method,
         order,
@@ -632,8 +759,12 @@ fn methods_like(typed: &str) -> String {
     }
 }
 
-/// The values of the command line, which win over those of the file; `None` where there are none at all.
-pub(super) fn exact_values(at: &[String], file: Result<Values, ProblemError>) -> Result<Option<Values>, Failure> {
+/// The values of the command line, which win over those of the file; `None` where there are none at
+/// all.
+pub(super) fn exact_values(
+    at: &[String],
+    file: Result<Values, ProblemError>,
+) -> Result<Option<Values>, Failure> {
     let mut values = Values::default();
     for text in at {
         let Some((name, value)) = text.split_once('=') else {
@@ -641,7 +772,8 @@ pub(super) fn exact_values(at: &[String], file: Result<Values, ProblemError>) ->
                 "--at {text}: expected NAME=VALUE, such as A=1.5"
             )));
         };
-        // `A=1,eps=1` and `A=1 eps=1`: the equals sign of the second value stands in the text of the first.
+        // `A=1,eps=1` and `A=1 eps=1`: the equals sign of the second value stands in the text of
+        // the first.
         if value.contains('=') {
             let parts = text
                 .split([',', ' ', ';'])
@@ -653,7 +785,8 @@ pub(super) fn exact_values(at: &[String], file: Result<Values, ProblemError>) ->
                 separate.join(" ")
             )));
         }
-        let value = parse_expression(value).map_err(|error| Failure::Usage(format!("--at {text}: {error}")))?;
+        let value = parse_expression(value)
+            .map_err(|error| Failure::Usage(format!("--at {text}: {error}")))?;
         let name = Symbol::new(name.trim());
         values
             .insert(name, value)
@@ -678,16 +811,24 @@ fn picture(_: &Oscillator, _: &Solution, _: &Values) -> Result<String, Failure> 
 }
 
 #[cfg(feature = "plot")]
-fn picture(oscillator: &Oscillator, solution: &Solution, values: &Values) -> Result<String, Failure> {
+fn picture(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    values: &Values,
+) -> Result<String, Failure> {
     use lindstedt::export::figure::{MotionFigure, motion_figure};
 
-    let motions = verify::motions(oscillator, solution, values).map_err(|error| Failure::refused(&error, None))?;
+    let motions = verify::motions(oscillator, solution, values)
+        .map_err(|error| Failure::refused(&error, None))?;
     let Some(motions) = motions else {
         return Err(Failure::Refused(
             "the formula has no real frequency there, so it has no motion".to_owned(),
         ));
     };
-    let at: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    let at: Vec<String> = values
+        .iter()
+        .map(|(name, value)| format!("{name} = {value}"))
+        .collect();
     let caption = format!("{}; {}", solution.equation, at.join(", "));
     let label = solution.title();
     let figure = MotionFigure {
@@ -697,7 +838,10 @@ fn picture(oscillator: &Oscillator, solution: &Solution, values: &Values) -> Res
         formula_label: &label,
         formula: &motions.formula,
         truth: &motions.truth,
-        envelopes: motions.envelope.as_ref().map_or(&[], |envelopes| envelopes.as_slice()),
+        envelopes: motions
+            .envelope
+            .as_ref()
+            .map_or(&[], |envelopes| envelopes.as_slice()),
         caption: &caption,
     };
     motion_figure(&figure).map_err(|error| Failure::refused(&error, None))

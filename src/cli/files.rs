@@ -1,7 +1,7 @@
 //! Where results go: checked before the work begins, replaced as a whole when it is done.
 //!
-//! A file is written under another name beside its place and then renamed, so that a full disk or an interrupt leaves the
-//! old one. `-` is standard output.
+//! A file is written under another name beside its place and then renamed, so that a full disk or
+//! an interrupt leaves the old one. `-` is standard output.
 
 use std::fs::OpenOptions;
 use std::io::{BufWriter, ErrorKind, Write as _};
@@ -16,14 +16,17 @@ pub(super) fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// How many characters a line of the result should have at most: the width of the terminal that shows it, or what `COLUMNS`
-/// says; 120 in a file or a pipe.
+/// How many characters a line of the result should have at most: the width of the terminal that
+/// shows it, or what `COLUMNS` says; 120 in a file or a pipe.
 pub(super) fn width(output: Option<&Path>) -> usize {
     const OF_FILES: usize = 120;
     const NARROWEST: usize = 40;
-    let asked = std::env::var("COLUMNS").ok().and_then(|text| text.trim().parse().ok());
+    let asked = std::env::var("COLUMNS")
+        .ok()
+        .and_then(|text| text.trim().parse().ok());
     let terminal = || {
-        let (terminal_size::Width(columns), _) = terminal_size::terminal_size_of(std::io::stdout())?;
+        let (terminal_size::Width(columns), _) =
+            terminal_size::terminal_size_of(std::io::stdout())?;
         output.is_none_or(is_standard).then_some(columns.into())
     };
     asked.or_else(terminal).unwrap_or(OF_FILES).max(NARROWEST)
@@ -32,7 +35,8 @@ pub(super) fn width(output: Option<&Path>) -> usize {
 /// Refuses destinations that cannot be written, before any work is done for them.
 ///
 /// # Errors
-/// A picture that is no SVG, two results in one place, the input as an output, or a place that cannot be written.
+/// A picture that is no SVG, two results in one place, the input as an output, or a place that
+/// cannot be written.
 pub(super) fn check(common: &Common, input: Option<&Path>) -> Result<(), Failure> {
     if let Some(picture) = &common.plot {
         let is_svg = picture
@@ -89,7 +93,9 @@ pub(super) fn write(path: Option<&Path>, result: Writer) -> Result<(), String> {
         None => {
             let mut output = BufWriter::new(std::io::stdout().lock());
             match result(&mut output).and_then(|()| output.flush()) {
-                Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(format!("standard output: {error}")),
+                Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+                    Err(format!("standard output: {error}"))
+                }
                 _ => Ok(()),
             }
         }
@@ -156,15 +162,19 @@ fn replace(path: &Path, result: Writer) -> Result<(), String> {
     }
     let file = beside(path).map_err(refused)?;
     let mut output = BufWriter::new(file.as_file());
-    result(&mut output).and_then(|()| output.flush()).map_err(refused)?;
+    result(&mut output)
+        .and_then(|()| output.flush())
+        .map_err(refused)?;
     drop(output);
     file.as_file().sync_data().map_err(refused)?;
     let place = resolved(path).unwrap_or_else(|| path.to_owned());
-    file.persist(place).map_err(|error| refused(error.error)).map(drop)
+    file.persist(place)
+        .map_err(|error| refused(error.error))
+        .map(drop)
 }
 
-/// An empty file beside this place, with the permissions that the file there has, or that a new one gets. It is gone when
-/// it is dropped.
+/// An empty file beside this place, with the permissions that the file there has, or that a new one
+/// gets. It is gone when it is dropped.
 fn beside(path: &Path) -> std::io::Result<NamedTempFile> {
     let place = resolved(path).unwrap_or_else(|| path.to_owned());
     let mut builder = Builder::new();

@@ -8,7 +8,8 @@ use lindstedt::report;
 use super::answer::{Answer, no_such};
 use super::{Common, Failure, Format, Outcome, Work, json_text};
 
-/// The arctangent in place of Coulomb's sgn: the paper's Table 1, and what it does to a swing near rest
+/// The arctangent in place of Coulomb's sgn: the paper's Table 1, and what it does to a swing near
+/// rest
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
 pub struct Arguments {

@@ -17,18 +17,23 @@ use super::files::width;
 use super::problem::problem;
 use super::{Common, Failure, Format, Outcome, Work, json_text, tolerance};
 
-/// The three phases of a pendulum that hits an elastic barrier, in closed form, checked by Runge-Kutta
+/// The three phases of a pendulum that hits an elastic barrier, in closed form, checked by
+/// Runge-Kutta
 #[derive(Args, Default)]
 pub struct Arguments {
-    /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input; without it the paper's swing
+    /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input;
+    /// without it the paper's swing
     pub problem: Option<String>,
-    /// A value, exact (1.5, 3/2, pi/3): A of the release, xc of the barrier, its gamma, parameters; repeatable
+    /// A value, exact (1.5, 3/2, pi/3): A of the release, xc of the barrier, its gamma, parameters;
+    /// repeatable
     #[arg(long, value_name = "NAME=VALUE")]
     at: Vec<String>,
-    /// How the swing of the derived phases is derived, by a method of `lindstedt derive`; without it the first that passes
+    /// How the swing of the derived phases is derived, by a method of `lindstedt derive`; without
+    /// it the first that passes
     #[arg(long)]
     method: Option<String>,
-    /// The order of the law; without it 2 for the paper's reading, for the derived phases the lowest that passes
+    /// The order of the law; without it 2 for the paper's reading, for the derived phases the
+    /// lowest that passes
     #[arg(long, value_parser = super::count, allow_hyphen_values = true)]
     order: Option<u32>,
     /// What the amplitude of the derived law measures: initial or first-harmonic
@@ -37,7 +42,8 @@ pub struct Arguments {
     /// The whole force of the barrier in the depth d, such as "k*d^2"; without it gamma*d^(3/2)
     #[arg(long, value_name = "FORCE")]
     force: Option<String>,
-    /// The law of the contact in the derived phases, such as power-law; without it exact; all for a table of every law
+    /// The law of the contact in the derived phases, such as power-law; without it exact; all for a
+    /// table of every law
     #[arg(long, value_name = "LAW")]
     contact: Option<String>,
     /// The barrier is on the left of xc, and the release at x = A
@@ -46,7 +52,8 @@ pub struct Arguments {
     /// Every method in one table, each at its lowest order that passes
     #[arg(long)]
     compare: bool,
-    /// Prove the numbers of the paper's impact, pendulum and barrier of Hertz, and how far each closed form is off
+    /// Prove the numbers of the paper's impact, pendulum and barrier of Hertz, and how far each
+    /// closed form is off
     #[arg(long, conflicts_with = "compare")]
     certify: bool,
     #[command(flatten)]
@@ -125,11 +132,19 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
         Side::Right => 1.0,
         Side::Left => -1.0,
     };
-    let exact = [-towards * setup.release, towards * setup.barrier, setup.stiffness].map(as_written);
+    let exact = [
+        -towards * setup.release,
+        towards * setup.barrier,
+        setup.stiffness,
+    ]
+    .map(as_written);
     let [Some(amplitude), Some(barrier), Some(stiffness)] = &exact else {
-        return Err(Failure::Refused("a number of the impact is not finite".to_owned()));
+        return Err(Failure::Refused(
+            "a number of the impact is not finite".to_owned(),
+        ));
     };
-    let enclosure = enclose_impact(amplitude, barrier, stiffness).map_err(|error| Failure::refused(&error, None))?;
+    let enclosure = enclose_impact(amplitude, barrier, stiffness)
+        .map_err(|error| Failure::refused(&error, None))?;
     let impact = solve(setup).map_err(|error| Failure::refused(&error, None))?;
     let report = ImpactCertificateReport {
         impact: &impact,
@@ -143,7 +158,10 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
         picture: None,
         other: &no_such,
     };
-    let passes = report.verdicts().iter().any(|(_, verdict)| *verdict == Verdict::Pass);
+    let passes = report
+        .verdicts()
+        .iter()
+        .any(|(_, verdict)| *verdict == Verdict::Pass);
     Ok(Outcome {
         verdict: Some(Verdict::of(passes)),
         ..answer.outcome(common)?
@@ -152,7 +170,10 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
 
 /// A double as the fraction that its decimals say.
 fn as_written(value: f64) -> Option<Rational> {
-    parse_expression(&value.to_string()).ok()?.as_number().cloned()
+    parse_expression(&value.to_string())
+        .ok()?
+        .as_number()
+        .cloned()
 }
 
 /// The table of methods.
@@ -162,7 +183,10 @@ fn every_method(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
             "--compare takes every method: leave out --method, or `method` in the file".to_owned(),
         ));
     }
-    if setup.units.is_some_and(|units| units.yield_limits().next().is_some()) {
+    if setup
+        .units
+        .is_some_and(|units| units.yield_limits().next().is_some())
+    {
         return Err(Failure::Usage(
             "--compare has no pressures: leave out `yield` in the file, or --compare".to_owned(),
         ));
@@ -189,7 +213,10 @@ fn every_method(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
             format => no_such(format),
         },
     };
-    let passes = table.rows.iter().any(|row| row.verdict(tolerance) == Verdict::Pass);
+    let passes = table
+        .rows
+        .iter()
+        .any(|row| row.verdict(tolerance) == Verdict::Pass);
     Ok(Outcome {
         verdict: Some(Verdict::of(passes)),
         ..answer.outcome(common)?
@@ -265,8 +292,14 @@ fn picture(impact: &Impact) -> Result<String, Failure> {
         Some(_) => impact.equation.clone(),
     };
     let release = match setup.side {
-        Side::Right if impact.equilibrium == 0.0 => format!("A = {}", decimal(-impact.turning_point)),
-        _ => format!("{}(0) = {}", impact.letters.coordinate, decimal(impact.turning_point)),
+        Side::Right if impact.equilibrium == 0.0 => {
+            format!("A = {}", decimal(-impact.turning_point))
+        }
+        _ => format!(
+            "{}(0) = {}",
+            impact.letters.coordinate,
+            decimal(impact.turning_point)
+        ),
     };
     let stiffness = match &setup.force {
         None => format!(", γ = {}", decimal(setup.stiffness)),

@@ -15,11 +15,13 @@ use super::files::width;
 use super::problem::from_file;
 use super::{Common, Failure, Format, Outcome, Work, json_text};
 
-/// Energies and forces to equations of motion, units checked, dimensionless groups, places of rest and modes
+/// Energies and forces to equations of motion, units checked, dimensionless groups, places of rest
+/// and modes
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
 pub struct Arguments {
-    /// A TOML file with [lagrangian], or - for standard input; without it the paper's pendulum, its equations (1) to (8) beside what follows
+    /// A TOML file with [lagrangian], or - for standard input; without it the paper's pendulum, its
+    /// equations (1) to (8) beside what follows
     pub file: Option<PathBuf>,
     /// A value of a parameter (1.5, 3/2, pi/3): with all of them the modes get numbers; repeatable
     #[arg(long, value_name = "NAME=VALUE")]

@@ -18,12 +18,14 @@ use super::{Common, Failure, Format, Outcome, STOP, Work, json_text};
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
 pub struct Arguments {
-    /// A TOML file, or - for standard input; without it the paper's design and the materials of its Table 2
+    /// A TOML file, or - for standard input; without it the paper's design and the materials of its
+    /// Table 2
     pub file: Option<PathBuf>,
     /// Only the materials of the file, without those of the paper's Table 2
     #[arg(long)]
     only_own: bool,
-    /// Do not integrate: every motion as a chain of closed forms, good to a percent where damping is light and dry friction alpha no more than 0.02 of the amplitude
+    /// Do not integrate: every motion as a chain of closed forms, good to a percent where damping
+    /// is light and dry friction alpha no more than 0.02 of the amplitude
     #[arg(long)]
     chain: bool,
     #[command(flatten)]
@@ -52,7 +54,8 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let common = &arguments.common;
     if common.tolerance.is_some() {
         return Err(Failure::Usage(
-            "--tolerance belongs to a verdict, and a study of materials has none: leave it out".to_owned(),
+            "--tolerance belongs to a verdict, and a study of materials has none: leave it out"
+                .to_owned(),
         ));
     }
     let mut question = problem

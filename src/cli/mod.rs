@@ -1,10 +1,12 @@
 //! Arguments -> calls -> printing: the only place that reads or prints. One file per command.
 //!
-//! In: the arguments, a problem file, standard input. Out: a result in the format asked for, a picture, and the exit code. What is
-//! computed and what it says comes from the library; here options are read, and refusals get the names of the options.
+//! In: the arguments, a problem file, standard input. Out: a result in the format asked for, a
+//! picture, and the exit code. What is computed and what it says comes from the library; here
+//! options are read, and refusals get the names of the options.
 //!
-//! Results go to standard output or the file of `--output`, all else to standard error. Exit codes: 0 done, 1 refused or
-//! failed, 2 wrong usage, 3 verdict failed, 4 stopped before the end with a partial result, 70 internal error.
+//! Results go to standard output or the file of `--output`, all else to standard error. Exit codes:
+//! 0 done, 1 refused or failed, 2 wrong usage, 3 verdict failed, 4 stopped before the end with a
+//! partial result, 70 internal error.
 
 mod answer;
 mod audit;
@@ -51,8 +53,8 @@ Without a command: lindstedt impact, the paper's pendulum and barrier.
 Exit codes: 0 done; 1 the problem was refused or failed; 2 wrong usage; 3 verdict failed (with --tolerance; audit and
 paper always); 4 stopped before the end: what is printed is partial and says so.";
 
-/// The commands, in the order of `--help`. A new one is a file with its arguments, documented by their line in
-/// `--help`, and their [`Work`], and a row here.
+/// The commands, in the order of `--help`. A new one is a file with its arguments, documented by
+/// their line in `--help`, and their [`Work`], and a row here.
 static COMMANDS: [Command; 16] = [
     Command::of::<derive::Arguments>("derive")
         .writing(Formats::Programs)
@@ -91,8 +93,9 @@ struct Command {
     name: &'static str,
     /// The formats of its result.
     formats: Formats,
-    /// The time to wait for a part of the result, once the time is up. Only a simulation, a search, branches and an expansion have parts
-    /// worth waiting for; to add up what a long one did takes a while.
+    /// The time to wait for a part of the result, once the time is up. Only a simulation, a search,
+    /// branches and an expansion have parts worth waiting for; to add up what a long one did takes
+    /// a while.
     patience: fn() -> Duration,
     /// The time limit in seconds where none is given.
     limit: Option<f64>,
@@ -119,7 +122,8 @@ trait Work: Send + RefUnwindSafe {
 }
 
 impl Command {
-    /// The command with these arguments. It writes pictures and tables and has no parts to wait for, unless its row says otherwise.
+    /// The command with these arguments. It writes pictures and tables and has no parts to wait
+    /// for, unless its row says otherwise.
     const fn of<A: Args + Work + 'static>(name: &'static str) -> Self {
         Self {
             name,
@@ -163,7 +167,9 @@ impl Command {
         let command = (self.augment)(clap::Command::new(self.name));
         match self.formats {
             Formats::One => command,
-            formats => command.mut_arg("format", |format| format.value_parser(format_parser(formats.listed()))),
+            formats => command.mut_arg("format", |format| {
+                format.value_parser(format_parser(formats.listed()))
+            }),
         }
     }
 
@@ -172,7 +178,11 @@ impl Command {
         let is_taken = matches!(self.formats, Formats::One)
             || Format::OF_ALL.contains(&format)
             || self.formats.listed().contains(&format);
-        if is_taken { Ok(()) } else { answer::no_such(format) }
+        if is_taken {
+            Ok(())
+        } else {
+            answer::no_such(format)
+        }
     }
 }
 
@@ -214,7 +224,8 @@ impl Formats {
 /// What every command takes.
 #[derive(Args, Clone, Default)]
 struct Common {
-    /// What to print; without it what the name of --output ends in (.tex, .json, .html, .svg, .csv, .py), else text
+    /// What to print; without it what the name of --output ends in (.tex, .json, .html, .svg, .csv,
+    /// .py), else text
     #[arg(long, value_parser = format_parser([]))]
     format: Option<Format>,
     /// Write the result to this file instead of standard output; - for standard output
@@ -223,7 +234,8 @@ struct Common {
     /// Draw the answer beside the truth to this SVG file (- for standard output)
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
-    /// Exit with code 3 if a verdict is worse than this relative error (verdicts use 0.01 without it)
+    /// Exit with code 3 if a verdict is worse than this relative error (verdicts use 0.01 without
+    /// it)
     #[arg(long, value_name = "R", value_parser = positive, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// Print results only, no notes and no progress
@@ -234,7 +246,8 @@ struct Common {
     timeout: Option<f64>,
 }
 
-/// The option of a command without a verdict: its help is silent on it, and the command refuses it with the reason.
+/// The option of a command without a verdict: its help is silent on it, and the command refuses it
+/// with the reason.
 fn no_verdict(tolerance: clap::Arg) -> clap::Arg {
     tolerance.hide(true)
 }
@@ -259,7 +272,10 @@ impl Format {
     /// All of them.
     fn all() -> impl Iterator<Item = Self> {
         let programs = Language::ALL.map(Self::Code);
-        Self::OF_ALL.into_iter().chain([Self::Svg, Self::Csv]).chain(programs)
+        Self::OF_ALL
+            .into_iter()
+            .chain([Self::Svg, Self::Csv])
+            .chain(programs)
     }
 
     /// That of files whose names end so; none for `txt` and everything unknown.
@@ -272,7 +288,9 @@ impl Format {
             "py" => Self::Code(Language::Python),
             "jl" => Self::Code(Language::Julia),
             "m" => Self::Code(Language::Matlab),
-            name @ ("json" | "html" | "svg" | "csv") => Self::all().find(|format| format.name() == name)?,
+            name @ ("json" | "html" | "svg" | "csv") => {
+                Self::all().find(|format| format.name() == name)?
+            }
             _ => return None,
         })
     }
@@ -291,13 +309,20 @@ impl Format {
     }
 }
 
-/// Reads a format. Help lists those of every command and these; a command refuses all others with the reason.
-fn format_parser(listed: impl IntoIterator<Item = Format>) -> impl TypedValueParser<Value = Format> {
+/// Reads a format. Help lists those of every command and these; a command refuses all others with
+/// the reason.
+fn format_parser(
+    listed: impl IntoIterator<Item = Format>,
+) -> impl TypedValueParser<Value = Format> {
     let listed: Vec<Format> = Format::OF_ALL.into_iter().chain(listed).collect();
-    let values = Format::all().map(|format| PossibleValue::new(format.name()).hide(!listed.contains(&format)));
+    let values = Format::all()
+        .map(|format| PossibleValue::new(format.name()).hide(!listed.contains(&format)));
     let unknown = || "no format of this name".to_owned();
-    PossibleValuesParser::new(values)
-        .try_map(move |name| Format::all().find(|format| format.name() == name).ok_or_else(unknown))
+    PossibleValuesParser::new(values).try_map(move |name| {
+        Format::all()
+            .find(|format| format.name() == name)
+            .ok_or_else(unknown)
+    })
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -350,7 +375,11 @@ impl Failure {
     /// A refusal with what else may be behind it.
     fn with_notes(self, notes: &[String]) -> Self {
         match self {
-            Self::Refused(text) => Self::Refused(notes.iter().fold(text, |text, note| text + "\n  note: " + note)),
+            Self::Refused(text) => Self::Refused(
+                notes
+                    .iter()
+                    .fold(text, |text, note| text + "\n  note: " + note),
+            ),
             Self::Usage(text) => Self::Usage(text),
         }
     }
@@ -370,7 +399,10 @@ fn in_flags(advice: &Advice) -> String {
         Setting::Amplitude(convention) => format!("--amplitude {}", convention.name()),
         Setting::Small(name) => format!("--small {name}"),
         Setting::Taylor => "--taylor DEGREE".to_owned(),
-        Setting::About { coordinate, position } => format!("--about {coordinate}={position}"),
+        Setting::About {
+            coordinate,
+            position,
+        } => format!("--about {coordinate}={position}"),
         Setting::Values => "--at".to_owned(),
         Setting::Resonance(driving, linear) => format!("--resonance {driving}:{linear}"),
         other => other.to_string(),
@@ -399,7 +431,8 @@ struct Outcome {
     partial: bool,
 }
 
-/// The row of the command that is asked for, and its arguments; an error is a message of the parser, `--help` among them.
+/// The row of the command that is asked for, and its arguments; an error is a message of the
+/// parser, `--help` among them.
 fn asked() -> Result<(&'static Command, Box<dyn Work>), clap::Error> {
     let matches = clap::Command::new("lindstedt")
         .version(env!("CARGO_PKG_VERSION"))
@@ -425,7 +458,8 @@ pub fn run() -> ExitCode {
     let (command, work) = match asked() {
         Ok(asked) => asked,
         Err(error) => {
-            // `--help` and `--version` are results and succeed; a closed pipe is no failure of theirs.
+            // `--help` and `--version` are results and succeed; a closed pipe is no failure of
+            // theirs.
             let code = u8::try_from(error.exit_code()).unwrap_or(2);
             let _ = error.print();
             return ExitCode::from(code);
@@ -450,7 +484,10 @@ pub fn run() -> ExitCode {
         (Some(Some(Err(Failure::Refused(message)))), _) => fail(1, &message),
         (Some(Some(Err(Failure::Usage(message)))), _) => fail(2, &message),
         (None, Some((code, message))) => fail(code, &message),
-        (Some(None), _) | (None, None) => fail(70, "internal error: please report the command and its input"),
+        (Some(None), _) | (None, None) => fail(
+            70,
+            "internal error: please report the command and its input",
+        ),
     }
 }
 
@@ -470,8 +507,8 @@ type Worked = Option<Result<Outcome, Failure>>;
 /// Exit code and message of work that ends without a result.
 type InVain = (u8, String);
 
-/// Does work until its end, an interrupt or the time limit: what came of it, where anything did, and what to say
-/// where nothing did because it was ended.
+/// Does work until its end, an interrupt or the time limit: what came of it, where anything did,
+/// and what to say where nothing did because it was ended.
 fn within_limits(
     work: Box<dyn Work>,
     timeout: Option<f64>,
@@ -489,7 +526,8 @@ fn within_limits(
     // Without a handler an interrupt just ends the program, as it would any other.
     drop(handler);
     // The work has a thread of its own so that a time limit can end it, wherever it is.
-    let limit = timeout.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
+    let limit =
+        timeout.map(|seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
     // No time at all is up before the work begins, whichever of the two threads is run first.
     if limit.is_some_and(|limit| limit.is_zero()) {
         STOP.store(true, Ordering::Relaxed);
@@ -513,8 +551,9 @@ fn within_limits(
         ),
         Ok(Message::Done(_)) | Err(_) => {
             let seconds = timeout.unwrap_or_default();
-            let message =
-                format!("stopped after {seconds} s without a result\n  help: lower the order, or raise --timeout");
+            let message = format!(
+                "stopped after {seconds} s without a result\n  help: lower the order, or raise --timeout"
+            );
             (wait_for_part(&receiver, patience()), Some((1, message)))
         }
     };
@@ -539,7 +578,8 @@ enum Message {
     Interrupt,
 }
 
-/// Asks the work to hand back what it has, and waits a little for it; not at all for work that has no parts.
+/// Asks the work to hand back what it has, and waits a little for it; not at all for work that has
+/// no parts.
 fn wait_for_part(receiver: &Receiver<Message>, patience: Duration) -> Option<Worked> {
     STOP.store(true, Ordering::Relaxed);
     if patience.is_zero() {
@@ -562,7 +602,9 @@ fn finish(outcome: Outcome, common: &Common, judged: bool) -> ExitCode {
                 return fail(1, &error);
             }
         }
-        Some((_, Err(Failure::Refused(reason) | Failure::Usage(reason)))) => no_picture = Some(reason),
+        Some((_, Err(Failure::Refused(reason) | Failure::Usage(reason)))) => {
+            no_picture = Some(reason)
+        }
         None => {}
     }
     if let Some(note) = outcome.note.filter(|_| !common.quiet) {
@@ -570,7 +612,11 @@ fn finish(outcome: Outcome, common: &Common, judged: bool) -> ExitCode {
     }
     let written = files::write(common.output.as_deref(), outcome.result);
     if let (Ok(()), Some(reason)) = (&written, &no_picture) {
-        let _ = writeln!(std::io::stderr(), "error: no picture: {}", printable(reason));
+        let _ = writeln!(
+            std::io::stderr(),
+            "error: no picture: {}",
+            printable(reason)
+        );
     }
     match written {
         Err(error) => fail(1, &error),
@@ -631,11 +677,17 @@ fn tolerance(common: &Common) -> f64 {
 fn json_text(document: &impl Serialize) -> Result<String, Failure> {
     match serde_json::to_string_pretty(document) {
         // JSON leaves some characters as they are that steer a terminal; they are in strings alone.
-        Ok(text) if text.chars().any(|letter| letter != '\n' && is_invisible(letter)) => {
-            let escaped = text.chars().map(|letter| match letter != '\n' && is_invisible(letter) {
-                true => format!("\\u{:04x}", u32::from(letter)),
-                false => letter.to_string(),
-            });
+        Ok(text)
+            if text
+                .chars()
+                .any(|letter| letter != '\n' && is_invisible(letter)) =>
+        {
+            let escaped = text
+                .chars()
+                .map(|letter| match letter != '\n' && is_invisible(letter) {
+                    true => format!("\\u{:04x}", u32::from(letter)),
+                    false => letter.to_string(),
+                });
             Ok(escaped.collect::<String>() + "\n")
         }
         Ok(text) => Ok(text + "\n"),

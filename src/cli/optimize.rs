@@ -11,7 +11,9 @@ use clap::Args;
 use lindstedt::export::json::optimization::{read_record, record_head, record_line};
 use lindstedt::export::{json, optimization};
 use lindstedt::genetic::OptionsError;
-use lindstedt::optimize::{OptimizeError, Question, SearchRun, Study, Watch, optimize, optimize_on};
+use lindstedt::optimize::{
+    OptimizeError, Question, SearchRun, Study, Watch, optimize, optimize_on,
+};
 use lindstedt::problem::Problem;
 use lindstedt::report;
 
@@ -21,11 +23,13 @@ use super::problem::from_file;
 use super::progress;
 use super::{Common, Failure, Format, Outcome, STOP, Work, count, json_text, read_at_most};
 
-/// The design that rests soonest: the paper's genetic algorithm, what decides the optimum, fronts of several wishes
+/// The design that rests soonest: the paper's genetic algorithm, what decides the optimum, fronts
+/// of several wishes
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
 pub struct Arguments {
-    /// A TOML file, or - for standard input; without it the paper's study: its Table 4 searched for the least rest time
+    /// A TOML file, or - for standard input; without it the paper's study: its Table 4 searched for
+    /// the least rest time
     pub file: Option<PathBuf>,
     /// Seed of all random numbers, in place of that of the file
     #[arg(long, value_name = "N")]
@@ -36,13 +40,15 @@ pub struct Arguments {
     /// Threads; all cores without it. The result is the same for any number
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
-    /// Stop after so many evaluations, shared evenly by the runs, or after so many seconds (30s) with the runs that are done
+    /// Stop after so many evaluations, shared evenly by the runs, or after so many seconds (30s)
+    /// with the runs that are done
     #[arg(long, value_name = "N|SECONDSs", value_parser = budget)]
     budget: Option<Budget>,
     /// Write every run to this file as soon as it is done, a line of JSON each
     #[arg(long, value_name = "FILE.jsonl")]
     record: Option<PathBuf>,
-    /// Take the runs of this record over, do the missing ones, and add them to it: the result is the same as in one go
+    /// Take the runs of this record over, do the missing ones, and add them to it: the result is
+    /// the same as in one go
     #[arg(long, value_name = "FILE.jsonl")]
     resume: Option<PathBuf>,
     #[command(flatten)]
@@ -63,7 +69,9 @@ fn budget(text: &str) -> Result<Budget, String> {
     };
     match (text.strip_suffix('s'), text.parse::<usize>()) {
         (None, Ok(evaluations)) if evaluations > 0 => Ok(Budget::Evaluations(evaluations)),
-        (Some(text), _) if seconds(text).is_some() => Ok(Budget::Time(seconds(text).unwrap_or_default())),
+        (Some(text), _) if seconds(text).is_some() => {
+            Ok(Budget::Time(seconds(text).unwrap_or_default()))
+        }
         _ => Err("expected a number of evaluations (50000), or of seconds (30s)".to_owned()),
     }
 }
@@ -149,7 +157,10 @@ fn search(
         "{bar:40} {percent} % of the generations, {eta} left at most",
     );
     let watch = Watch {
-        stop: &|| STOP.load(Ordering::Relaxed) || deadline.is_some_and(|deadline| Instant::now() >= deadline),
+        stop: &|| {
+            STOP.load(Ordering::Relaxed)
+                || deadline.is_some_and(|deadline| Instant::now() >= deadline)
+        },
         done: &|run| record.write(run),
         progress: &|done| bar.inc(done as u64),
     };
@@ -168,8 +179,12 @@ fn refused(error: OptimizeError) -> Failure {
         OptimizeError::NoFeasible { exists: true, .. } => {
             Some("give penalty = \"feasible-first\" in [genetic], or the search more generations")
         }
-        OptimizeError::NoFeasible { exists: false, .. } => Some("loosen [limits], or give the search more generations"),
-        OptimizeError::Options(OptionsError::Budget { .. }) => Some("raise --budget, or lower --runs"),
+        OptimizeError::NoFeasible { exists: false, .. } => {
+            Some("loosen [limits], or give the search more generations")
+        }
+        OptimizeError::Options(OptionsError::Budget { .. }) => {
+            Some("raise --budget, or lower --runs")
+        }
         OptimizeError::Stopped => Some("give it more time"),
         _ => None,
     };
@@ -195,13 +210,22 @@ impl Record {
             file: Mutex::new(None),
             trouble: Mutex::new(None),
         };
-        let named = [("--record", &arguments.record), ("--resume", &arguments.resume)];
+        let named = [
+            ("--record", &arguments.record),
+            ("--resume", &arguments.resume),
+        ];
         for (option, path) in named {
             let Some(path) = path else { continue };
             if is_standard(path) {
-                return Err(Failure::Usage(format!("{option} needs a file: runs are written to it")));
+                return Err(Failure::Usage(format!(
+                    "{option} needs a file: runs are written to it"
+                )));
             }
-            let others = [&arguments.common.output, &arguments.common.plot, &arguments.file];
+            let others = [
+                &arguments.common.output,
+                &arguments.common.plot,
+                &arguments.file,
+            ];
             if others.into_iter().flatten().any(|other| same(other, path)) {
                 return Err(Failure::Usage(format!(
                     "{option} {} is read or written as something else: give another name",
@@ -212,8 +236,9 @@ impl Record {
         let (mut known, mut end) = (vec![], 0);
         if let Some(path) = &arguments.resume {
             let text = read_at_most(path, LARGEST_RECORD)?;
-            (known, end) = read_record(&text, question)
-                .map_err(|error| Failure::Refused(format!("--resume {}: {error}", path.display())))?;
+            (known, end) = read_record(&text, question).map_err(|error| {
+                Failure::Refused(format!("--resume {}: {error}", path.display()))
+            })?;
         }
         let (path, goes_on) = match (&arguments.record, &arguments.resume) {
             (None, None) => return Ok(none),
@@ -221,8 +246,9 @@ impl Record {
             (Some(record), _) => (record, false),
             (None, Some(resume)) => (resume, true),
         };
-        let cannot =
-            |error: std::io::Error| Failure::Refused(format!("cannot write {}: {}", path.display(), error.kind()));
+        let cannot = |error: std::io::Error| {
+            Failure::Refused(format!("cannot write {}: {}", path.display(), error.kind()))
+        };
         let file = match goes_on {
             true => {
                 let mut file = OpenOptions::new().write(true).open(path).map_err(cannot)?;
@@ -234,7 +260,8 @@ impl Record {
             }
             false => {
                 let mut file = Self::create(path)?;
-                let mut text = record_head(question).map_err(|error| Failure::refused(&error, None))?;
+                let mut text =
+                    record_head(question).map_err(|error| Failure::refused(&error, None))?;
                 for run in &known {
                     text += &record_line(run).map_err(|error| Failure::refused(&error, None))?;
                 }
@@ -268,11 +295,16 @@ impl Record {
 
     /// Writes a run as a whole line; what goes wrong is told at the end.
     fn write(&self, run: &SearchRun) {
-        let Ok(mut file) = self.file.lock() else { return };
+        let Ok(mut file) = self.file.lock() else {
+            return;
+        };
         let Some(open) = file.as_mut() else { return };
         let written = record_line(run)
             .map_err(|error| error.to_string())
-            .and_then(|line| open.write_all(line.as_bytes()).map_err(|error| error.to_string()));
+            .and_then(|line| {
+                open.write_all(line.as_bytes())
+                    .map_err(|error| error.to_string())
+            });
         if let Err(error) = written {
             *file = None;
             if let Ok(mut trouble) = self.trouble.lock() {

@@ -3,7 +3,8 @@
 use lindstedt::Interrupt;
 use lindstedt::export::{json, primary};
 use lindstedt::impact::primary::{
-    PrimaryParameter, PrimarySettings, PrimaryStop, UnknownPrimaryParameter, simulate_primary, sweep_primary,
+    PrimaryParameter, PrimarySettings, PrimaryStop, UnknownPrimaryParameter, simulate_primary,
+    sweep_primary,
 };
 use lindstedt::impact::sweep::{Axis, grid_size, grid_values};
 use lindstedt::problem::Problem;
@@ -43,13 +44,18 @@ fn one(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
         interrupt: Interrupt::by(&STOP),
         ..file.settings
     };
-    if let Some(late) = asked.samples.iter().find(|sample| **sample > settings.duration) {
+    if let Some(late) = asked
+        .samples
+        .iter()
+        .find(|sample| **sample > settings.duration)
+    {
         return Err(Failure::Refused(format!(
             "--sample {late} lies beyond the duration {}\n  help: raise `duration` in [run]",
             settings.duration
         )));
     }
-    let motion = simulate_primary(file.case, &settings).map_err(|error| Failure::refused(&error, None))?;
+    let motion =
+        simulate_primary(file.case, &settings).map_err(|error| Failure::refused(&error, None))?;
     let report = PrimaryReport {
         motion: &motion,
         units: &file.units,
@@ -88,13 +94,22 @@ fn many(problem: &Problem, asked: &Asked, axes: &[Axis]) -> Result<Outcome, Fail
         .map(|axis| axis.name().parse())
         .collect::<Result<_, UnknownPrimaryParameter>>()
         .map_err(|error| Failure::refused(&error, error.help()))?;
-    if let Some(index) = (1..parameters.len()).find(|index| parameters[..*index].contains(&parameters[*index])) {
-        return Err(Failure::Usage(format!("`{}` is swept twice", parameters[index].name())));
+    if let Some(index) =
+        (1..parameters.len()).find(|index| parameters[..*index].contains(&parameters[*index]))
+    {
+        return Err(Failure::Usage(format!(
+            "`{}` is swept twice",
+            parameters[index].name()
+        )));
     }
     let total = grid_size(axes).map_err(|error| Failure::refused(&error, None))?;
     let (mut motions, mut units) = (Vec::with_capacity(total), Vec::with_capacity(total));
     for number in 0..total {
-        let varied: Vec<(PrimaryParameter, f64)> = parameters.iter().copied().zip(grid_values(axes, number)).collect();
+        let varied: Vec<(PrimaryParameter, f64)> = parameters
+            .iter()
+            .copied()
+            .zip(grid_values(axes, number))
+            .collect();
         let file = problem.primary_case(&varied);
         let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
         let settings = PrimarySettings {
@@ -125,9 +140,13 @@ fn many(problem: &Problem, asked: &Asked, axes: &[Axis]) -> Result<Outcome, Fail
             format => no_such(format),
         },
     };
-    let broken = rows.iter().filter(|row| row.stop != PrimaryStop::Duration).count();
+    let broken = rows
+        .iter()
+        .filter(|row| row.stop != PrimaryStop::Duration)
+        .count();
     Ok(Outcome {
-        note: (broken > 0).then(|| format!("warning: {broken} of {} motions stopped early", rows.len())),
+        note: (broken > 0)
+            .then(|| format!("warning: {broken} of {} motions stopped early", rows.len())),
         verdict: Some(Verdict::of(broken == 0)),
         partial: broken > 0,
         ..answer.outcome(common)?
@@ -148,7 +167,8 @@ fn check_sweep(asked: &Asked) -> Result<(), Failure> {
                 .to_owned(),
         ));
     }
-    let common = |axis: &&Axis| ["duration", "integrator_tolerance", "step_limit"].contains(&axis.name());
+    let common =
+        |axis: &&Axis| ["duration", "integrator_tolerance", "step_limit"].contains(&axis.name());
     match asked.sweep.iter().find(common) {
         Some(axis) => Err(Failure::Refused(format!(
             "`{}` is the same for all motions of a sweep: give it in [run]",

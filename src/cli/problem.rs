@@ -1,4 +1,5 @@
-//! PROBLEM on the command line: an equation in quotes, a TOML file, a name of the catalogue, or - for standard input.
+//! PROBLEM on the command line: an equation in quotes, a TOML file, a name of the catalogue, or -
+//! for standard input.
 
 use std::path::Path;
 
@@ -12,7 +13,8 @@ use super::{Failure, read};
 /// What a PROBLEM says. A name that ends in `.toml`, or a file that exists, is a file.
 ///
 /// # Errors
-/// A file that cannot be read or is no problem; a single word that is neither an equation nor a name.
+/// A file that cannot be read or is no problem; a single word that is neither an equation nor a
+/// name.
 pub(super) fn problem(text: &str) -> Result<Problem, Failure> {
     match path(text) {
         Some(path) => from_file(path),
@@ -35,7 +37,10 @@ pub(super) fn from_file(path: &Path) -> Result<Problem, Failure> {
     // Only TOML assigns to a bare key.
     let is_toml = text.lines().any(|line| {
         let line = line.trim_start();
-        let key: String = line.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+        let key: String = line
+            .chars()
+            .take_while(|c| c.is_alphanumeric() || *c == '_')
+            .collect();
         line.starts_with('[') || (key.len() > 1 && line[key.len()..].trim_start().starts_with('='))
     });
     if is_standard(path) && !is_toml {
@@ -60,7 +65,8 @@ fn from_words(text: &str) -> Result<Problem, Failure> {
     if let Some(entry) = catalog::find(text.trim()) {
         return Ok(with_equation(entry.equation));
     }
-    // A single word cannot be an equation: it is a name with a slip in it, or a file that is not there.
+    // A single word cannot be an equation: it is a name with a slip in it, or a file that is not
+    // there.
     let word = text.trim();
     let is_word = word.len() > 1
         && word.starts_with(|letter: char| letter.is_ascii_alphabetic())

@@ -16,7 +16,8 @@ use super::problem::problem;
 use super::progress::{PROGRESS, with_progress};
 use super::{Common, Failure, Format, Outcome, STOP, Work, files, json_text, tolerance};
 
-/// Steady states of a driven or self-excited oscillator: every branch with its stability, folds, period doublings, backbone
+/// Steady states of a driven or self-excited oscillator: every branch with its stability, folds,
+/// period doublings, backbone
 #[derive(Args)]
 pub struct Arguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
@@ -24,13 +25,16 @@ pub struct Arguments {
     /// The parameter that varies, and from where to where: Omega=0.5:1.5
     #[arg(long, value_name = "NAME=FROM:TO", allow_hyphen_values = true)]
     vary: Option<String>,
-    /// harmonic-balance; or multiple-scales or averaging, their steady motions beside the branches of harmonic balance, which judge them
+    /// harmonic-balance; or multiple-scales or averaging, their steady motions beside the branches
+    /// of harmonic balance, which judge them
     #[arg(long)]
     method: Option<String>,
-    /// The highest harmonic kept; without it as many as bring the error below a tenth of the tolerance, 64 at most; of multiple-scales its order
+    /// The highest harmonic kept; without it as many as bring the error below a tenth of the
+    /// tolerance, 64 at most; of multiple-scales its order
     #[arg(long, value_name = "H", value_parser = super::count, allow_hyphen_values = true)]
     order: Option<u32>,
-    /// Periods of the drive in a period of the motion: 2 for motions after a period doubling, 3 for a third of the frequency
+    /// Periods of the drive in a period of the motion: 2 for motions after a period doubling, 3 for
+    /// a third of the frequency
     #[arg(long, value_name = "N", value_parser = super::count, allow_hyphen_values = true)]
     periods: Option<u32>,
     /// The value of another parameter, exact (1.5, 3/2, pi/3); repeatable
@@ -57,7 +61,8 @@ impl Work for Arguments {
 fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Response)?;
-    let oscillator = Oscillator::parse(formula.equation).map_err(|error| Failure::advised(&error, error.help()))?;
+    let oscillator = Oscillator::parse(formula.equation)
+        .map_err(|error| Failure::advised(&error, error.help()))?;
     let method = method(arguments.method.as_deref().or(formula.method))?;
     let order = match (arguments.order, formula.order) {
         (Some(order), _) | (None, Some(Order::Power(order))) => Some(order),
@@ -69,7 +74,10 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
     };
     let Some(vary) = arguments.vary.as_deref().or(problem.vary.as_deref()) else {
-        let name = oscillator.parameters.first().map_or("Omega", |name| name.name());
+        let name = oscillator
+            .parameters
+            .first()
+            .map_or("Omega", |name| name.name());
         return Err(Failure::Refused(format!(
             "nothing varies\n  help: --vary {name}=FROM:TO, or vary = \"{name}=FROM:TO\" in the file"
         )));
@@ -98,10 +106,11 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         .as_ref()
         .filter(|slow| slow.coordinate() != question.oscillator.coordinate)
     {
-        question.oscillator =
-            Oscillator::from_equation(&slow.equation).map_err(|error| Failure::advised(&error, error.help()))?;
+        question.oscillator = Oscillator::from_equation(&slow.equation)
+            .map_err(|error| Failure::advised(&error, error.help()))?;
     }
-    let mut response = with_progress("of this search, or of its points", || respond(&question)).map_err(refused)?;
+    let mut response = with_progress("of this search, or of its points", || respond(&question))
+        .map_err(refused)?;
     if let Some(solution) = slow {
         response = response.beside(solution);
     }
@@ -122,7 +131,12 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
                 response.branches.len()
             )
         }),
-        verdict: Some(response.slow.as_ref().map_or(response.verdict, |slow| slow.verdict)),
+        verdict: Some(
+            response
+                .slow
+                .as_ref()
+                .map_or(response.verdict, |slow| slow.verdict),
+        ),
         partial: !response.complete,
         ..answer.outcome(&arguments.common)?
     })
@@ -144,7 +158,11 @@ fn method(name: Option<&str>) -> Result<Method, Failure> {
 }
 
 /// The slow equations of the primary resonance.
-fn slow_equations(question: &Question, method: Method, order: Option<u32>) -> Result<Solution, Failure> {
+fn slow_equations(
+    question: &Question,
+    method: Method,
+    order: Option<u32>,
+) -> Result<Solution, Failure> {
     if !question.oscillator.force.contains(Symbol::new("t")) {
         return Err(Failure::Usage(format!(
             "--method {0}: there is no drive; `lindstedt derive --method {0}` has the limit cycle, and harmonic balance its branches",
@@ -163,12 +181,17 @@ fn slow_equations(question: &Question, method: Method, order: Option<u32>) -> Re
         resonance: Some((1, 1)),
         ..Options::default()
     };
-    solve(&question.oscillator, &options).map_err(|refusal| refused_term(&question.oscillator, &refusal))
+    solve(&question.oscillator, &options)
+        .map_err(|refusal| refused_term(&question.oscillator, &refusal))
 }
 
 /// A name and a range: `Omega=0.5:1.5`.
 fn range(text: &str) -> Result<(Symbol, [f64; 2]), Failure> {
-    let form = || Failure::Usage(format!("--vary {text}: expected NAME=FROM:TO, such as Omega=0.5:1.5"));
+    let form = || {
+        Failure::Usage(format!(
+            "--vary {text}: expected NAME=FROM:TO, such as Omega=0.5:1.5"
+        ))
+    };
     let (name, range) = text.split_once('=').ok_or_else(form)?;
     let (from, to) = range.split_once(':').ok_or_else(form)?;
     let name = parse_expression(name)
@@ -176,7 +199,8 @@ fn range(text: &str) -> Result<(Symbol, [f64; 2]), Failure> {
         .and_then(|name| name.as_symbol())
         .ok_or_else(form)?;
     let number = |text: &str| {
-        let value = parse_expression(text).map_err(|error| Failure::Usage(format!("--vary {text}: {error}")))?;
+        let value = parse_expression(text)
+            .map_err(|error| Failure::Usage(format!("--vary {text}: {error}")))?;
         value.evaluate(&Default::default()).map_err(|_| form())
     };
     Ok((name, [number(from)?, number(to)?]))
@@ -219,7 +243,9 @@ fn refused(error: ResponseError) -> Failure {
         _ => None,
     };
     match error {
-        ResponseError::Unknown(_) | ResponseError::Count { .. } => Failure::Usage(error.to_string()),
+        ResponseError::Unknown(_) | ResponseError::Count { .. } => {
+            Failure::Usage(error.to_string())
+        }
         _ => Failure::refused(&error, help),
     }
 }

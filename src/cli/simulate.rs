@@ -7,7 +7,8 @@ use lindstedt::export::simulation::{Report, SweepReport, csv, latex, sweep_csv, 
 use lindstedt::export::{html, json};
 use lindstedt::impact::sweep::{Axis, AxisError, Summary, grid_size, grid_values, sweep, sweep_on};
 use lindstedt::impact::{
-    BASELINE_DURATIONS, Integrator, Model, Parameter, Settings, Simulation, Start, baseline, known_until, simulate,
+    BASELINE_DURATIONS, Integrator, Model, Parameter, Settings, Simulation, Start, baseline,
+    known_until, simulate,
 };
 use lindstedt::problem::{Problem, Simulate, SimulateError};
 use lindstedt::verify::Verdict;
@@ -20,12 +21,15 @@ use super::progress::{self, MOTIONS};
 use super::trajectory::{self, Asked};
 use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, whole};
 
-/// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any equation or mechanism
+/// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any
+/// equation or mechanism
 #[derive(Args)]
 pub struct Arguments {
-    /// A TOML file, - for standard input, an equation in quotes or a name of the catalogue; without it the paper's pendulum and barrier
+    /// A TOML file, - for standard input, an equation in quotes or a name of the catalogue; without
+    /// it the paper's pendulum and barrier
     pub problem: Option<String>,
-    /// Where an equation or a mechanism of one's own begins (x=1.5,v=0; "a=1,b'=2"): what is left out is 0
+    /// Where an equation or a mechanism of one's own begins (x=1.5,v=0; "a=1,b'=2"): what is left
+    /// out is 0
     #[arg(long, value_name = "x=VALUE", allow_hyphen_values = true)]
     from: Vec<String>,
     /// How long it is followed; 50 without it
@@ -34,10 +38,12 @@ pub struct Arguments {
     /// A value of one of its parameters (1.5, 3/2, pi/3); repeatable
     #[arg(long, value_name = "NAME=VALUE")]
     at: Vec<String>,
-    /// Look at an equation or a mechanism of one's own once in this time (Poincaré's section): 2*pi/Omega
+    /// Look at an equation or a mechanism of one's own once in this time (Poincaré's section):
+    /// 2*pi/Omega
     #[arg(long, value_name = "PERIOD", conflicts_with = "section")]
     every: Option<String>,
-    /// Look at it where an expression of its coordinates, velocities and the time grows through zero: x', "x - 0.1"
+    /// Look at it where an expression of its coordinates, velocities and the time grows through
+    /// zero: x', "x - 0.1"
     #[arg(long, value_name = "EXPRESSION", allow_hyphen_values = true)]
     section: Option<String>,
     /// Look at it from this time on, when it has settled
@@ -46,16 +52,17 @@ pub struct Arguments {
     /// Report the state at this time (repeatable)
     #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
     sample: Vec<f64>,
-    /// The method: power series with the contact in a variable in which it is analytic; Runge-Kutta, one smooth phase at
-    /// a time; or both, and how far they differ
+    /// The method: power series with the contact in a variable in which it is analytic;
+    /// Runge-Kutta, one smooth phase at a time; or both, and how far they differ
     #[arg(long, value_enum)]
     integrator: Option<Method>,
-    /// Do not integrate: swing and contact in closed form, impact after impact to rest, each with its formula, and its error against
-    /// the integration; a sweep is not judged
+    /// Do not integrate: swing and contact in closed form, impact after impact to rest, each with
+    /// its formula, and its error against the integration; a sweep is not judged
     #[arg(long, conflicts_with = "integrator")]
     chain: bool,
-    /// Follow many motions: a parameter over a range by equal steps, by equal ratios (from:to:count:log), or at the values of a
-    /// list (NAME=a,b,c); repeated, over every combination
+    /// Follow many motions: a parameter over a range by equal steps, by equal ratios
+    /// (from:to:count:log), or at the values of a list (NAME=a,b,c); repeated, over every
+    /// combination
     #[arg(long, value_name = "NAME=from:to:count", value_parser = axis, allow_hyphen_values = true)]
     sweep: Vec<Axis>,
     /// In a sweep: beside each rest time those without a barrier and with one that loses nothing
@@ -112,7 +119,11 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         return own(arguments, &problem);
     }
     let foreign = [
-        ("--from", !arguments.from.is_empty(), "start and speed in [pendulum]"),
+        (
+            "--from",
+            !arguments.from.is_empty(),
+            "start and speed in [pendulum]",
+        ),
         ("--until", arguments.until.is_some(), "duration in [run]"),
         ("--at", !arguments.at.is_empty(), "the keys of a file"),
         ("--every", arguments.every.is_some(), "--sample"),
@@ -224,8 +235,10 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
             "--sample {late} lies beyond the duration {duration}\n  help: raise `duration` in [run]"
         )));
     }
-    let follow =
-        |integrator| simulate(&model, start, integrator, &settings).map_err(|error| Failure::refused(&error, None));
+    let follow = |integrator| {
+        simulate(&model, start, integrator, &settings)
+            .map_err(|error| Failure::refused(&error, None))
+    };
     let integrator = arguments.integrator.unwrap_or(Method::Taylor);
     let motion = match integrator {
         _ if arguments.chain => follow(Integrator::Chain)?,
@@ -239,7 +252,10 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     };
     let others = baseline(&motion).map_err(|error| Failure::refused(&error, None))?;
     let units = asked.units.as_ref();
-    let dissipation = asked.case.dissipation(units).map_err(|error| refused(error.into()))?;
+    let dissipation = asked
+        .case
+        .dissipation(units)
+        .map_err(|error| refused(error.into()))?;
     let report = Report {
         motion: &motion,
         baseline: others.as_ref(),
@@ -249,7 +265,11 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         samples: &arguments.sample,
         dissipation: Some(&dissipation),
         units,
-        known_until: if arguments.chain { None } else { known_until(&motion) },
+        known_until: if arguments.chain {
+            None
+        } else {
+            known_until(&motion)
+        },
     };
     let draw: Option<Draw> = Some(&|| picture(&report));
     let text = match arguments.common.format() {
@@ -266,20 +286,28 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         .into_iter()
         .flatten()
         .find(|motion| !motion.stop.is_complete());
-    let note = broken.map(|motion| format!("warning: stopped early, what there is is kept: {}", motion.stop));
+    let note = broken.map(|motion| {
+        format!(
+            "warning: stopped early, what there is is kept: {}",
+            motion.stop
+        )
+    });
     Ok(Outcome {
         result: whole(text),
         picture,
         note,
         verdict: Some(match &judge {
-            Some(judge) if arguments.chain => chain_verdict(&motion, judge, arguments.common.tolerance),
+            Some(judge) if arguments.chain => {
+                chain_verdict(&motion, judge, arguments.common.tolerance)
+            }
             judge => verdict(&motion, judge.as_ref(), arguments.common.tolerance),
         }),
         partial: broken.is_some(),
     })
 }
 
-/// The settings of the file. A chain goes on to rest, unless the file says how long or nothing damps the swing.
+/// The settings of the file. A chain goes on to rest, unless the file says how long or nothing
+/// damps the swing.
 fn settings(arguments: &Arguments, asked: &Simulate) -> Settings {
     let settings = Settings {
         interrupt: Interrupt::by(&STOP),
@@ -302,17 +330,20 @@ fn settings(arguments: &Arguments, asked: &Simulate) -> Settings {
 /// How long a chain is followed to rest, in units of 1/omega.
 const LONGEST_CHAIN: f64 = 1e4;
 
-/// Without `--tolerance`: how far the rest time of a chain may be from that by integration, in parts of it.
+/// Without `--tolerance`: how far the rest time of a chain may be from that by integration, in
+/// parts of it.
 const CHAIN_TOLERANCE: f64 = 0.01;
 
-/// The rest time by the chain and by integration agree, or neither comes to rest and the motions are near.
+/// The rest time by the chain and by integration agree, or neither comes to rest and the motions
+/// are near.
 fn chain_verdict(motion: &Simulation, judge: &Simulation, tolerance: Option<f64>) -> Verdict {
     let allowed = tolerance.unwrap_or(CHAIN_TOLERANCE);
     let rest = motion.rest();
     let agreed = match (rest.time, judge.rest().time) {
         (Ok(found), Ok(truth)) => (found / truth - 1.0).abs() <= allowed,
         (Err(_), Err(_)) => {
-            motion.difference(judge, 2001).displacement <= allowed * rest.amplitude.max(f64::MIN_POSITIVE)
+            motion.difference(judge, 2001).displacement
+                <= allowed * rest.amplitude.max(f64::MIN_POSITIVE)
         }
         _ => false,
     };
@@ -332,7 +363,10 @@ fn verdict(motion: &Simulation, judge: Option<&Simulation>, tolerance: Option<f6
 }
 
 /// The motions of a sweep, the last parameter varying fastest, and how to follow them.
-fn motions(arguments: &Arguments, problem: &Problem) -> Result<(Vec<(Model, Start)>, Settings), Failure> {
+fn motions(
+    arguments: &Arguments,
+    problem: &Problem,
+) -> Result<(Vec<(Model, Start)>, Settings), Failure> {
     let axes = arguments.sweep.as_slice();
     let total = grid_size(axes).map_err(|error| Failure::refused(&error, None))?;
     for axis in axes {
@@ -377,7 +411,10 @@ fn add_baseline(
         ..*settings
     };
     let others = |change: fn(Model) -> Model| {
-        let changed: Vec<_> = motions.iter().map(|(model, start)| (change(*model), *start)).collect();
+        let changed: Vec<_> = motions
+            .iter()
+            .map(|(model, start)| (change(*model), *start))
+            .collect();
         follow(&changed, &longer)
     };
     let without = others(|model| Model {
@@ -421,7 +458,8 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     let draw: Option<Draw> = Some(&|| sweep_picture(&report));
     let picture = pictured(&arguments.common, draw);
     let incomplete = rows.iter().filter(|row| !row.stop.is_complete()).count();
-    let note = (incomplete > 0).then(|| format!("warning: {incomplete} of {total} motions stopped early"));
+    let note =
+        (incomplete > 0).then(|| format!("warning: {incomplete} of {total} motions stopped early"));
     let write = match arguments.common.format() {
         Format::Csv => sweep_csv,
         Format::Json => json::sweep,
@@ -488,10 +526,12 @@ fn sweep_picture(_: &SweepReport) -> Result<String, Failure> {
 
 #[cfg(feature = "plot")]
 fn picture(report: &Report) -> Result<String, Failure> {
-    lindstedt::export::simulation::figure::simulation(report).map_err(|error| Failure::refused(&error, None))
+    lindstedt::export::simulation::figure::simulation(report)
+        .map_err(|error| Failure::refused(&error, None))
 }
 
 #[cfg(feature = "plot")]
 fn sweep_picture(report: &SweepReport) -> Result<String, Failure> {
-    lindstedt::export::simulation::figure::sweep(report).map_err(|error| Failure::refused(&error, None))
+    lindstedt::export::simulation::figure::sweep(report)
+        .map_err(|error| Failure::refused(&error, None))
 }

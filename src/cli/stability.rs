@@ -16,7 +16,8 @@ use super::files::width;
 use super::problem::problem;
 use super::{Common, Failure, Format, Outcome, Work, json_text, tolerance};
 
-/// Transition curves of a linear equation with periodic coefficients, such as Mathieu's: where rest is stable
+/// Transition curves of a linear equation with periodic coefficients, such as Mathieu's: where rest
+/// is stable
 #[derive(Args)]
 pub struct Arguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
@@ -30,10 +31,12 @@ pub struct Arguments {
     /// What the curves give: a letter of the mean stiffness, or the frequency
     #[arg(long = "for", value_name = "NAME")]
     solve_for: Option<String>,
-    /// A small parameter (repeatable); without it eps, and letters that alone stand before a wave or the velocity
+    /// A small parameter (repeatable); without it eps, and letters that alone stand before a wave
+    /// or the velocity
     #[arg(long, value_name = "NAME")]
     small: Vec<String>,
-    /// A value, exact (1.5, 3/2, pi/3): asks for numbers and verdicts, and is how far a picture or a table goes; repeatable
+    /// A value, exact (1.5, 3/2, pi/3): asks for numbers and verdicts, and is how far a picture or
+    /// a table goes; repeatable
     #[arg(long, value_name = "NAME=VALUE")]
     at: Vec<String>,
     #[command(flatten)]
@@ -67,20 +70,24 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Some(Order::Power(order)) => Some(order),
         Some(Order::Degrees(_)) => {
             return Err(Failure::Refused(
-                "`order` of a transition curve is a whole number: degrees L,M are those of pade".to_owned(),
+                "`order` of a transition curve is a whole number: degrees L,M are those of pade"
+                    .to_owned(),
             ));
         }
     };
     let options = Options {
         order: arguments.order.or(order).unwrap_or(usual.order),
-        tongues: arguments.tongues.map_or(usual.tongues, |tongues| tongues as usize),
+        tongues: arguments
+            .tongues
+            .map_or(usual.tongues, |tongues| tongues as usize),
         small: match arguments.small.is_empty() {
             true => formula.small.map(str::to_owned).into_iter().collect(),
             false => arguments.small.clone(),
         },
         solve_for: arguments.solve_for.clone(),
     };
-    let curves = hill::transition_curves(&oscillator, &options).map_err(|error| refused(&oscillator.typed, &error))?;
+    let curves = hill::transition_curves(&oscillator, &options)
+        .map_err(|error| refused(&oscillator.typed, &error))?;
     let values = exact_values(&arguments.at, problem.values_of_motion())?;
     let asked = values.is_some() || arguments.common.tolerance.is_some();
     let values = values.unwrap_or_default();
@@ -123,24 +130,32 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 /// A refusal, with the term that it names shown in the equation.
 fn refused(typed: &lindstedt::expr::Typed, error: &HillError) -> Failure {
     let place = error.term().and_then(|term| typed.place(term));
-    let shown = place.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));
+    let shown = place.map_or(String::new(), |[line, carets]| {
+        format!("\n  {line}\n  {carets}")
+    });
     Failure::refused(&format!("{error}{shown}"), error.help())
 }
 
 fn unjudged(error: &TruthError) -> Failure {
     match error {
         TruthError::Unknown(..) => Failure::Usage(format!("--at: {error}")),
-        TruthError::Missing(_) => Failure::refused(error, Some("give it with --at NAME=VALUE".to_owned())),
-        TruthError::NotConfirmed(_) | TruthError::Coefficients => {
-            Failure::refused(error, Some("take smaller values, or fewer tongues".to_owned()))
+        TruthError::Missing(_) => {
+            Failure::refused(error, Some("give it with --at NAME=VALUE".to_owned()))
         }
+        TruthError::NotConfirmed(_) | TruthError::Coefficients => Failure::refused(
+            error,
+            Some("take smaller values, or fewer tongues".to_owned()),
+        ),
         _ => Failure::refused(error, None),
     }
 }
 
 /// The curves from nothing small up to the value of the first small parameter that has one.
 fn charts(curves: &TransitionCurves, values: &Values) -> Result<(Symbol, Vec<Chart>), Failure> {
-    let sizes = curves.small.iter().filter_map(|name| Some((*name, values.get(*name)?)));
+    let sizes = curves
+        .small
+        .iter()
+        .filter_map(|name| Some((*name, values.get(*name)?)));
     let eps = Symbol::new("eps");
     let Some((by, upto)) = sizes.max_by_key(|(name, _)| *name == eps) else {
         return Err(Failure::Refused(format!(
@@ -148,7 +163,8 @@ fn charts(curves: &TransitionCurves, values: &Values) -> Result<(Symbol, Vec<Cha
             curves.small.first().map_or("eps", |name| name.name())
         )));
     };
-    let charts = hill::chart(curves, &values.numbers(), by, upto, STEPS).map_err(|error| unjudged(&error))?;
+    let charts = hill::chart(curves, &values.numbers(), by, upto, STEPS)
+        .map_err(|error| unjudged(&error))?;
     Ok((by, charts))
 }
 
@@ -158,9 +174,16 @@ fn picture(_: &TransitionCurves, _: Symbol, _: &[Chart], _: &Values) -> Result<S
 }
 
 #[cfg(feature = "plot")]
-fn picture(curves: &TransitionCurves, by: Symbol, charts: &[Chart], values: &Values) -> Result<String, Failure> {
+fn picture(
+    curves: &TransitionCurves,
+    by: Symbol,
+    charts: &[Chart],
+    values: &Values,
+) -> Result<String, Failure> {
     let others = values.iter().filter(|(name, _)| *name != by);
-    let others: Vec<String> = others.map(|(name, value)| format!("; {name} = {value}")).collect();
+    let others: Vec<String> = others
+        .map(|(name, value)| format!("; {name} = {value}"))
+        .collect();
     let caption = format!("{}{}", curves.equation, others.concat());
     stability::picture(curves, by, charts, &caption).map_err(|error| Failure::refused(&error, None))
 }

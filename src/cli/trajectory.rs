@@ -6,7 +6,9 @@ use lindstedt::impact::sweep::{Axis, grid_size, grid_values};
 use lindstedt::problem::Problem;
 use lindstedt::report::{self, MotionSweep, TRUSTED, TrajectoryReport};
 use lindstedt::system::{End, Integrator, SystemError};
-use lindstedt::trajectory::{Course, DISPLACEMENT, Section, SweptMotion, Trajectory, TrajectoryError, in_words, sweep};
+use lindstedt::trajectory::{
+    Course, DISPLACEMENT, Section, SweptMotion, Trajectory, TrajectoryError, in_words, sweep,
+};
 use lindstedt::verify::Verdict;
 use lindstedt::{Interrupt, Symbol};
 
@@ -50,7 +52,11 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
     if !asked.sweep.is_empty() {
         return many(&course, asked);
     }
-    if let Some(late) = asked.samples.iter().find(|sample| **sample > course.duration) {
+    if let Some(late) = asked
+        .samples
+        .iter()
+        .find(|sample| **sample > course.duration)
+    {
         return Err(Failure::Refused(format!(
             "--sample {late} lies beyond the duration {}\n  help: raise --until",
             course.duration
@@ -125,7 +131,9 @@ fn by_both(course: &Course) -> Result<[Trajectory; 2], Failure> {
     };
     let judge = by(Integrator::RungeKutta);
     let passed = match (&end, &judge) {
-        (Ok(series), Ok(judge)) => judge.is_complete() || judge.end() > series.end() * (1.0 + TRUSTED),
+        (Ok(series), Ok(judge)) => {
+            judge.is_complete() || judge.end() > series.end() * (1.0 + TRUSTED)
+        }
         (Err(_), Ok(judge)) => judge.end() > 0.0,
         (_, Err(_)) => false,
     };
@@ -165,7 +173,11 @@ fn course(problem: &Problem, asked: &Asked) -> Result<Course, Failure> {
     course.section = section(&course, asked)?;
     let needed = course.parameters();
     let values = exact_values(asked.at, problem.values_with(&needed))?.unwrap_or_default();
-    if let Some(unknown) = values.numbers().into_keys().find(|name| !needed.contains(name)) {
+    if let Some(unknown) = values
+        .numbers()
+        .into_keys()
+        .find(|name| !needed.contains(name))
+    {
         return Err(refused(TrajectoryError::Unknown(unknown)));
     }
     course.values = values.numbers();
@@ -182,7 +194,8 @@ fn course(problem: &Problem, asked: &Asked) -> Result<Course, Failure> {
     }
     if course.after > 0.0 && course.section.is_none() && asked.sweep.is_empty() {
         return Err(Failure::Usage(
-            "--after belongs to a section or a sweep: give --every, --section or --sweep".to_owned(),
+            "--after belongs to a section or a sweep: give --every, --section or --sweep"
+                .to_owned(),
         ));
     }
     let starts_swept = asked
@@ -197,9 +210,14 @@ fn course(problem: &Problem, asked: &Asked) -> Result<Course, Failure> {
     }
     let mut begun: Vec<Symbol> = Vec::new();
     for part in asked.from.iter().flat_map(|text| text.split(',')) {
-        let form = || Failure::Usage(format!("--from {part}: expected NAME=VALUE, such as x=1.5 or v=0"));
+        let form = || {
+            Failure::Usage(format!(
+                "--from {part}: expected NAME=VALUE, such as x=1.5 or v=0"
+            ))
+        };
         let (name, value) = part.split_once('=').ok_or_else(form)?;
-        let value = parse_expression(value).map_err(|error| Failure::Usage(format!("--from {part}: {error}")))?;
+        let value = parse_expression(value)
+            .map_err(|error| Failure::Usage(format!("--from {part}: {error}")))?;
         let number = value.evaluate(&Default::default()).map_err(|_| form())?;
         let name = match (name.trim(), course.coordinates.as_slice()) {
             // With one coordinate there is no doubt whose velocity is meant.
@@ -218,11 +236,13 @@ fn course(problem: &Problem, asked: &Asked) -> Result<Course, Failure> {
 /// The section asked for.
 fn section(course: &Course, asked: &Asked) -> Result<Option<Section>, Failure> {
     let read = |option: &str, text: &str| {
-        parse_expression(text).map_err(|error| Failure::Usage(format!("--{option} {text}: {error}")))
+        parse_expression(text)
+            .map_err(|error| Failure::Usage(format!("--{option} {text}: {error}")))
     };
     let moves = |expression: &Expr| {
         let states = &course.rates.states;
-        expression.contains(Symbol::new("t")) || states.iter().any(|state| expression.contains(*state))
+        expression.contains(Symbol::new("t"))
+            || states.iter().any(|state| expression.contains(*state))
     };
     match (asked.every, asked.section) {
         (Some(text), _) => match read("every", text)? {
@@ -252,10 +272,15 @@ fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
     }
     if asked.sweep.len() > 1 && common.draws() {
         return Err(Failure::Usage(
-            "--plot draws the motions over one parameter, but more are swept: leave out --plot".to_owned(),
+            "--plot draws the motions over one parameter, but more are swept: leave out --plot"
+                .to_owned(),
         ));
     }
-    let names: Vec<Symbol> = asked.sweep.iter().map(|axis| Symbol::new(axis.name())).collect();
+    let names: Vec<Symbol> = asked
+        .sweep
+        .iter()
+        .map(|axis| Symbol::new(axis.name()))
+        .collect();
     let parameters = course.parameters();
     for (index, name) in names.iter().enumerate() {
         if !parameters.contains(name) && !course.rates.states.contains(name) {
@@ -279,7 +304,9 @@ fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
         }
     }
     let total = grid_size(asked.sweep).map_err(|error| Failure::refused(&error, None))?;
-    let grid: Vec<Vec<f64>> = (0..total).map(|number| grid_values(asked.sweep, number)).collect();
+    let grid: Vec<Vec<f64>> = (0..total)
+        .map(|number| grid_values(asked.sweep, number))
+        .collect();
     let bar = progress::bar(total, MOTIONS);
     let motions = sweep(course, &names, &grid, || bar.inc(1)).map_err(|(number, error)| {
         let Failure::Refused(message) = refused(error) else {
@@ -323,9 +350,14 @@ fn stopped_early(motions: &[SweptMotion], all: usize) -> Option<String> {
             0 => String::new(),
             some => format!(", {some} of them not to the end"),
         };
-        return Some(format!("warning: {kept}: {} of {all} motions{cut}", motions.len()));
+        return Some(format!(
+            "warning: {kept}: {} of {all} motions{cut}",
+            motions.len()
+        ));
     }
-    let number = motions.iter().position(|motion| motion.reason != End::Reached)?;
+    let number = motions
+        .iter()
+        .position(|motion| motion.reason != End::Reached)?;
     Some(format!(
         "warning: motion {} {kept}: {}",
         number + 1,
@@ -349,7 +381,8 @@ fn verdict(motion: &Trajectory, judge: Option<&Trajectory>, allowed: f64) -> Ver
         .balance
         .as_ref()
         .is_none_or(|balance| balance.residual <= allowed);
-    let agreed = judge.is_none_or(|judge| judge.is_complete() && motion.difference(judge) <= allowed);
+    let agreed =
+        judge.is_none_or(|judge| judge.is_complete() && motion.difference(judge) <= allowed);
     Verdict::of(kept && agreed && motion.is_complete())
 }
 

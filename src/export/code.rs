@@ -1,11 +1,14 @@
-//! A derived formula as a program: a small source file with the frequency, the displacement and the velocity as functions.
+//! A derived formula as a program: a small source file with the frequency, the displacement and the
+//! velocity as functions.
 //!
-//! In: an answer, judged or not. Out: source text in one of the [`Language`]s. What a program consists of is decided once, in
-//! `program.rs`; how an expression is written, and where a line is broken, in `writer.rs`; a language is a `Syntax`, a file of
-//! its own in this folder: spellings, and the functions that its library does not have.
+//! In: an answer, judged or not. Out: source text in one of the [`Language`]s. What a program
+//! consists of is decided once, in `program.rs`; how an expression is written, and where a line is
+//! broken, in `writer.rs`; a language is a `Syntax`, a file of its own in this folder: spellings,
+//! and the functions that its library does not have.
 //!
-//! A program computes what [`evaluate`](crate::method::numbers::evaluate) does, by the law that is judged. What cannot be written
-//! as a formula is refused; at given values its numbers can be written.
+//! A program computes what [`evaluate`](crate::method::numbers::evaluate) does, by the law that is
+//! judged. What cannot be written as a formula is refused; at given values its numbers can be
+//! written.
 
 mod c;
 mod julia;
@@ -77,13 +80,17 @@ pub enum NoCode {
     #[error("no program: the formula has no motion at these values{}", .0.as_ref().map_or(String::new(), |reason| format!(": {reason}")))]
     NoMotion(Option<String>),
     /// The amplitude changes.
-    #[error("no program: the amplitude changes with time, and programs are written for periodic motions")]
+    #[error(
+        "no program: the amplitude changes with time, and programs are written for periodic motions"
+    )]
     Slow,
     /// A drive holds the motion.
     #[error("no program: a drive holds the motion, and programs are written for free ones")]
     Driven,
     /// A coefficient that no double can hold.
-    #[error("no program: a coefficient of the formula is beyond the range of double precision, 1.8e308")]
+    #[error(
+        "no program: a coefficient of the formula is beyond the range of double precision, 1.8e308"
+    )]
     Beyond,
 }
 
@@ -103,9 +110,9 @@ impl NoCode {
     }
 }
 
-/// The source text of an answer for `oscillator`: what is known of it as a comment, then `angular_frequency`, `displacement` and
-/// `velocity`. Where only numbers solve the law they are those at the values of the verification; `tolerance` is that of its
-/// verdict.
+/// The source text of an answer for `oscillator`: what is known of it as a comment, then
+/// `angular_frequency`, `displacement` and `velocity`. Where only numbers solve the law they are
+/// those at the values of the verification; `tolerance` is that of its verdict.
 ///
 /// # Errors
 /// [`NoCode`], where the answer is no formula for a periodic motion.
@@ -140,7 +147,8 @@ struct Syntax {
     comment: &'static str,
     /// Names that no variable may have, beside those of the functions that a program calls.
     reserved: &'static [&'static str],
-    /// What stands behind a whole number, such as `.0` where a number without a point is an integer.
+    /// What stands behind a whole number, such as `.0` where a number without a point is an
+    /// integer.
     point: &'static str,
     /// pi.
     pi: &'static str,
@@ -154,18 +162,20 @@ struct Syntax {
     function: fn(Function) -> &'static str,
     /// The text of a function that the library of the language does not have.
     helper: fn(Function) -> Option<&'static str>,
-    /// What stands before and after the value of a variable; whether that is made of numbers written out alone.
+    /// What stands before and after the value of a variable; whether that is made of numbers
+    /// written out alone.
     variable: fn(&str, bool) -> [String; 2],
     /// What stands before and after a result.
     result: [&'static str; 2],
     /// The size of a variable in place of itself.
     size: fn(&str) -> String,
-    /// Ends a function without a value where a variable is not positive, for a reason in words; between them the variable that is
-    /// spoilt where all of it is computed at once.
+    /// Ends a function without a value where a variable is not positive, for a reason in words;
+    /// between them the variable that is spoilt where all of it is computed at once.
     positive: fn(&str, &str, &str) -> String,
     /// How an expression is broken that is longer than a line.
     breaks: Break,
-    /// What stands before the functions: what a program needs of the library, and what makes it a whole.
+    /// What stands before the functions: what a program needs of the library, and what makes it a
+    /// whole.
     beginning: fn(&Used) -> String,
     /// A whole function.
     routine: fn(&Text) -> String,
@@ -195,7 +205,8 @@ enum Exponent<'a> {
     Whole(&'a str),
     /// One half.
     Half,
-    /// A fraction with an odd denominator, to which every real number has a power; whether its numerator is odd.
+    /// A fraction with an odd denominator, to which every real number has a power; whether its
+    /// numerator is odd.
     OddRoot(&'a str, bool),
     /// Anything else: no power of a negative number.
     Real(&'a str),
@@ -263,7 +274,8 @@ enum Statement {
     Variable(Symbol, Value),
     /// From here on the size of an argument stands for it.
     Size(Symbol),
-    /// Without this being positive there is no value, for the reason given; what the value is computed with is the second.
+    /// Without this being positive there is no value, for the reason given; what the value is
+    /// computed with is the second.
     Positive(Symbol, Symbol, String),
 }
 

@@ -1,10 +1,12 @@
-//! Figures to look at: curves of numbers in, one SVG text out. The drawing is kuva's; here are the checks of the data,
-//! the house style, and three figures ready made, [`impact_figure`], [`motion_figure`] and [`backbone_figure`].
+//! Figures to look at: curves of numbers in, one SVG text out. The drawing is kuva's; here are the
+//! checks of the data, the house style, and three figures ready made, [`impact_figure`],
+//! [`motion_figure`] and [`backbone_figure`].
 //!
-//! The same numbers give the same bytes. Colours are those of Okabe and Ito, *Color Universal Design* (2008). Curves
-//! are thinned to about 2000 points; an axis whose values agree to 1e-9 shows a constant. A point that is not finite is
-//! an error, never a silent gap. On a logarithmic axis negative values are an error, and zeros, where an error
-//! curve meets its reference, are left out.
+//! The same numbers give the same bytes. Colours are those of Okabe and Ito, *Color Universal
+//! Design* (2008). Curves are thinned to about 2000 points; an axis whose values agree to 1e-9
+//! shows a constant. A point that is not finite is an error, never a silent gap. On a logarithmic
+//! axis negative values are an error, and zeros, where an error curve meets its reference, are left
+//! out.
 //!
 //! ```
 //! use lindstedt::export::figure::{Curve, CurveStyle, Panel, figure};
@@ -23,7 +25,9 @@ use axes::drawn;
 pub(super) use axes::power_of_ten;
 
 use crate::verify::comparison::Backbone;
-use kuva::prelude::{Figure, LabelConfig, Layout, LegendEntry, LegendPlot, Plot, SvgBackend, collect_legend_entries};
+use kuva::prelude::{
+    Figure, LabelConfig, Layout, LegendEntry, LegendPlot, Plot, SvgBackend, collect_legend_entries,
+};
 use kuva::render::render::{Primitive, Scene, TextAnchor};
 use kuva::render::render_utils::wrap_text;
 
@@ -32,7 +36,8 @@ use kuva::render::render_utils::wrap_text;
 pub struct CurveStyle(&'static str, &'static str, f64);
 
 impl CurveStyle {
-    /// The truth by Runge-Kutta: broad, light and solid; give it first, so that formulas lie over it.
+    /// The truth by Runge-Kutta: broad, light and solid; give it first, so that formulas lie over
+    /// it.
     pub const RUNGE_KUTTA: Self = Self("#56b4e9", "none", 4.5);
     /// A closed form: dark and dashed.
     pub const FORMULA: Self = Self("#d55e00", "6 3", 2.0);
@@ -46,7 +51,8 @@ impl CurveStyle {
     pub const SECOND_DIFFERENCE: Self = Self("#cc79a7", "7 2", 1.6);
     /// The next of a series.
     pub const THIRD_DIFFERENCE: Self = Self("#009e73", "2 2", 1.8);
-    /// Curves of one panel that must be told apart, in print and in colour-blind vision: colour and dashes both differ.
+    /// Curves of one panel that must be told apart, in print and in colour-blind vision: colour and
+    /// dashes both differ.
     pub const SERIES: [Self; 12] = [
         Self("#d55e00", "none", 1.6),
         Self("#0072b2", "7 3", 1.6),
@@ -75,7 +81,8 @@ impl CurveStyle {
     pub const THIRD_MARKED_POINTS: Self = Self("#009e73", POINTS, 4.5);
     /// A fourth kind.
     pub const FOURTH_MARKED_POINTS: Self = Self("#cc79a7", POINTS, 4.5);
-    /// Motions that were simulated, beside the curve that they should lie on: small, light and over it.
+    /// Motions that were simulated, beside the curve that they should lie on: small, light and over
+    /// it.
     pub const SIMULATED: Self = Self("#56b4e9", POINTS, 3.2);
     /// Motions that do not last: in the colour of [`Self::DIFFERENCE`], dashed.
     pub const UNSTABLE: Self = Self("#0072b2", "5 3", 1.3);
@@ -92,9 +99,11 @@ const POINTS: &str = "points";
 /// One line of a panel.
 #[derive(Clone, Copy, Debug)]
 pub struct Curve<'a> {
-    /// Words for the legend; curves with the same label and style share one entry, an empty label has none.
+    /// Words for the legend; curves with the same label and style share one entry, an empty label
+    /// has none.
     pub label: &'a str,
-    /// Two or more points (abscissa, ordinate) in the units of the axes, in the order in which they are joined.
+    /// Two or more points (abscissa, ordinate) in the units of the axes, in the order in which they
+    /// are joined.
     pub points: &'a [(f64, f64)],
     /// Colour, dash and width.
     pub style: CurveStyle,
@@ -124,8 +133,8 @@ pub enum Scale {
 pub struct Panel<'a> {
     /// Short title.
     pub title: &'a str,
-    /// Quantity and, last and in parentheses, unit: `time t (s)`. Very large or small numbers are divided by a power
-    /// of ten, which is named there: `time t (10⁻⁶ s)`.
+    /// Quantity and, last and in parentheses, unit: `time t (s)`. Very large or small numbers are
+    /// divided by a power of ten, which is named there: `time t (10⁻⁶ s)`.
     pub x_label: &'a str,
     /// The same for the ordinate.
     pub y_label: &'a str,
@@ -147,13 +156,20 @@ pub enum FigureError {
     #[error("nothing to draw in {0}: leave it out or give it data")]
     Empty(String),
     /// A curve (named) with fewer than two points to join.
-    #[error("{0} has fewer than 2 points to join (zeros on a logarithmic axis do not count): give more samples")]
+    #[error(
+        "{0} has fewer than 2 points to join (zeros on a logarithmic axis do not count): give more samples"
+    )]
     TooFewPoints(String),
-    /// A curve or guide and its number (named) that is not finite, or not positive on a logarithmic axis.
-    #[error("{0} has no place on the axes: stop the curve before it; for a logarithmic axis give sizes")]
+    /// A curve or guide and its number (named) that is not finite, or not positive on a logarithmic
+    /// axis.
+    #[error(
+        "{0} has no place on the axes: stop the curve before it; for a logarithmic axis give sizes"
+    )]
     OffAxes(String),
     /// Formula and truth part at this sample.
-    #[error("formula and truth must be sampled at the same times, but differ at sample {0}: sample both alike")]
+    #[error(
+        "formula and truth must be sampled at the same times, but differ at sample {0}: sample both alike"
+    )]
     DifferentTimes(usize),
 }
 
@@ -177,7 +193,8 @@ pub struct ImpactFigure<'a> {
     pub left_barrier: Option<f64>,
     /// Barrier on the right, in the unit of x.
     pub right_barrier: Option<f64>,
-    /// The coordinate with its unit, `displacement x (rad)`, and time with its own, `time t (units of 1/ω)`.
+    /// The coordinate with its unit, `displacement x (rad)`, and time with its own,
+    /// `time t (units of 1/ω)`.
     pub axes: [&'a str; 2],
     /// The motions, drawn in this order: Runge-Kutta first, formulas over it.
     pub motions: &'a [ImpactMotion<'a>],
@@ -185,8 +202,8 @@ pub struct ImpactFigure<'a> {
     pub caption: &'a str,
 }
 
-/// The pendulum against its barrier: phase plane x, x'; displacement x(t); and, where a motion has a contact, the
-/// contact enlarged, penetration x - x_c against time since touch.
+/// The pendulum against its barrier: phase plane x, x'; displacement x(t); and, where a motion has
+/// a contact, the contact enlarged, penetration x - x_c against time since touch.
 ///
 /// # Errors
 /// As [`figure`].
@@ -212,7 +229,10 @@ pub fn impact_figure(data: &ImpactFigure) -> Result<String, FigureError> {
     const LEFT: &str = "left barrier";
     const RIGHT: &str = "barrier x_c";
     let motions = data.motions.iter();
-    let phase: Vec<_> = motions.clone().map(|motion| phase_points(motion.samples)).collect();
+    let phase: Vec<_> = motions
+        .clone()
+        .map(|motion| phase_points(motion.samples))
+        .collect();
     let time: Vec<_> = motions.map(|motion| time_points(motion.samples)).collect();
     let barriers = |guide: fn(f64, &'static str) -> Guide<'static>| {
         let left = data.left_barrier.map(|at| guide(at, LEFT));
@@ -225,16 +245,41 @@ pub fn impact_figure(data: &ImpactFigure) -> Result<String, FigureError> {
         Some(unit) => format!("{words} {}", &axis[unit..]),
         None => words.to_owned(),
     };
-    let enlarged = [with_unit("time since touch", time), with_unit("depth", displacement)];
-    let mut panels = vec![
-        panel("Phase plane", [displacement, "velocity x′"], orbits, barriers(Guide::X)),
-        panel("Motion in time", [time, displacement], motions, barriers(Guide::Y)),
+    let enlarged = [
+        with_unit("time since touch", time),
+        with_unit("depth", displacement),
     ];
-    let touching = data.motions.iter().filter(|motion| !motion.contact.is_empty());
-    let contacts: Vec<_> = touching.map(|m| curve(m.label, m.contact, m.style)).collect();
+    let mut panels = vec![
+        panel(
+            "Phase plane",
+            [displacement, "velocity x′"],
+            orbits,
+            barriers(Guide::X),
+        ),
+        panel(
+            "Motion in time",
+            [time, displacement],
+            motions,
+            barriers(Guide::Y),
+        ),
+    ];
+    let touching = data
+        .motions
+        .iter()
+        .filter(|motion| !motion.contact.is_empty());
+    let contacts: Vec<_> = touching
+        .map(|m| curve(m.label, m.contact, m.style))
+        .collect();
     if !contacts.is_empty() {
         let labels = enlarged.each_ref().map(String::as_str);
-        let touch = vec![Guide::Y(0.0, if data.right_barrier.is_some() { RIGHT } else { LEFT })];
+        let touch = vec![Guide::Y(
+            0.0,
+            if data.right_barrier.is_some() {
+                RIGHT
+            } else {
+                LEFT
+            },
+        )];
         panels.push(panel("Contact, enlarged", labels, contacts, touch));
     }
     figure(&panels, data.caption)
@@ -255,16 +300,19 @@ pub struct MotionFigure<'a> {
     pub formula: &'a [(f64, f64, f64)],
     /// The truth, sampled at exactly the same times.
     pub truth: &'a [(f64, f64, f64)],
-    /// The envelopes of a motion whose amplitude changes, times and places; none for a periodic one.
+    /// The envelopes of a motion whose amplitude changes, times and places; none for a periodic
+    /// one.
     pub envelopes: &'a [Vec<(f64, f64)>],
     /// Words below the figure, or empty.
     pub caption: &'a str,
 }
 
-/// A derived solution against Runge-Kutta: x(t), the phase plane, and the difference formula - truth.
+/// A derived solution against Runge-Kutta: x(t), the phase plane, and the difference formula -
+/// truth.
 ///
 /// # Errors
-/// [`FigureError::DifferentTimes`] where the two were not sampled at the same times; otherwise as [`figure`].
+/// [`FigureError::DifferentTimes`] where the two were not sampled at the same times; otherwise as
+/// [`figure`].
 ///
 /// ```
 /// use lindstedt::export::figure::{MotionFigure, motion_figure};
@@ -288,16 +336,27 @@ pub struct MotionFigure<'a> {
 /// ```
 pub fn motion_figure(data: &MotionFigure) -> Result<String, FigureError> {
     let (formula, truth, name) = (data.formula, data.truth, data.coordinate);
-    let same = formula.iter().zip(truth).take_while(|(f, t)| f.0 == t.0).count();
+    let same = formula
+        .iter()
+        .zip(truth)
+        .take_while(|(f, t)| f.0 == t.0)
+        .count();
     if same < formula.len().max(truth.len()) {
         return Err(FigureError::DifferentTimes(same));
     }
-    let difference: Vec<(f64, f64)> = formula.iter().zip(truth).map(|(f, t)| (f.0, f.1 - t.1)).collect();
+    let difference: Vec<(f64, f64)> = formula
+        .iter()
+        .zip(truth)
+        .map(|(f, t)| (f.0, f.1 - t.1))
+        .collect();
     let (formula_time, truth_time) = (time_points(formula), time_points(truth));
     let (formula_phase, truth_phase) = (phase_points(formula), phase_points(truth));
     let over = |formula, truth| {
         let truth = curve("Runge-Kutta", truth, CurveStyle::RUNGE_KUTTA);
-        vec![truth, curve(data.formula_label, formula, CurveStyle::FORMULA)]
+        vec![
+            truth,
+            curve(data.formula_label, formula, CurveStyle::FORMULA),
+        ]
     };
     let with_unit = |quantity: String, unit| match unit {
         "" => quantity,
@@ -309,7 +368,11 @@ pub fn motion_figure(data: &MotionFigure) -> Result<String, FigureError> {
     let deviation = with_unit("formula − Runge-Kutta".to_owned(), data.displacement_unit);
     let mut motions = over(&formula_time, &truth_time);
     for (k, envelope) in data.envelopes.iter().enumerate() {
-        let label = if k == 0 { "envelope of the formula" } else { "" };
+        let label = if k == 0 {
+            "envelope of the formula"
+        } else {
+            ""
+        };
         motions.push(curve(label, envelope, CurveStyle::DIFFERENCE));
     }
     let shown = match data.envelopes.is_empty() {
@@ -321,13 +384,19 @@ pub fn motion_figure(data: &MotionFigure) -> Result<String, FigureError> {
     let panels = [
         panel(shown, [&time, &displacement], motions, vec![]),
         panel("Phase plane", [&displacement, &velocity], orbits, vec![]),
-        panel("Difference", [&time, &deviation], deviations, vec![Guide::Y(0.0, "")]),
+        panel(
+            "Difference",
+            [&time, &deviation],
+            deviations,
+            vec![Guide::Y(0.0, "")],
+        ),
     ];
     figure(&panels, data.caption)
 }
 
-/// omega against the amplitude, every method over the true motion, and below it the error on a logarithmic axis. Methods
-/// with one and the same law share a curve, and the caption names them. `marked` is the amplitude of the table.
+/// omega against the amplitude, every method over the true motion, and below it the error on a
+/// logarithmic axis. Methods with one and the same law share a curve, and the caption names them.
+/// `marked` is the amplitude of the table.
 ///
 /// # Errors
 /// As [`figure`].
@@ -349,7 +418,10 @@ pub fn backbone_figure(
     marked: Option<f64>,
     caption: &str,
 ) -> Result<String, FigureError> {
-    let drawn: Vec<&Backbone> = curves.iter().filter(|backbone| backbone.points.len() > 1).collect();
+    let drawn: Vec<&Backbone> = curves
+        .iter()
+        .filter(|backbone| backbone.points.len() > 1)
+        .collect();
     let mut caption = caption.to_owned();
     let label = |backbone: &&Backbone| match backbone.methods.as_slice() {
         [only] => only.clone(),
@@ -387,7 +459,12 @@ pub fn backbone_figure(
     )];
     if !deviations.is_empty() {
         let guides = mark().chain([Guide::Y(1.0, "")]).collect();
-        let mut below = panel("Error", [amplitude, "|error| of \u{3c9} (%)"], deviations, guides);
+        let mut below = panel(
+            "Error",
+            [amplitude, "|error| of \u{3c9} (%)"],
+            deviations,
+            guides,
+        );
         below.y_scale = Scale::Logarithmic;
         panels.push(below);
     }
@@ -402,7 +479,8 @@ const MOST_DOTS: usize = 12_000;
 /// Points of one curve beyond which it is thinned.
 const MOST_POINTS: usize = 2000;
 
-/// Sets panels two abreast (a last one alone takes the row), lettered, with one legend above and the caption below.
+/// Sets panels two abreast (a last one alone takes the row), lettered, with one legend above and
+/// the caption below.
 ///
 /// # Errors
 /// [`FigureError`], which names the panel and the curve.
@@ -410,7 +488,8 @@ pub fn figure(panels: &[Panel], caption: &str) -> Result<String, FigureError> {
     arranged(panels, caption, Arrangement::Abreast)
 }
 
-/// How far a curve is from the truth, in per cent, at the amplitudes that both have: either may begin later than the other.
+/// How far a curve is from the truth, in per cent, at the amplitudes that both have: either may
+/// begin later than the other.
 fn errors_in_percent(formula: &[(f64, f64)], truth: &[(f64, f64)]) -> Vec<(f64, f64)> {
     /// Errors in per cent below which rounding of truth and formula shows.
     const LEAST_ERROR: f64 = 1e-10;
@@ -433,7 +512,11 @@ enum Arrangement {
     Stacked,
 }
 
-fn arranged(panels: &[Panel], caption: &str, arrangement: Arrangement) -> Result<String, FigureError> {
+fn arranged(
+    panels: &[Panel],
+    caption: &str,
+    arrangement: Arrangement,
+) -> Result<String, FigureError> {
     let abreast = arrangement == Arrangement::Abreast;
     if panels.is_empty() {
         return Err(FigureError::Empty("the figure".to_owned()));
@@ -444,7 +527,13 @@ fn arranged(panels: &[Panel], caption: &str, arrangement: Arrangement) -> Result
         let alone = !abreast || (index + 1 == panels.len() && index % 2 == 0);
         let columns = 1 + usize::from(alone);
         let (lines, layout) = drawn(panel, columns)?;
-        let key = |entry: &LegendEntry| (entry.label.clone(), entry.color.clone(), entry.dasharray.clone());
+        let key = |entry: &LegendEntry| {
+            (
+                entry.label.clone(),
+                entry.color.clone(),
+                entry.dasharray.clone(),
+            )
+        };
         for entry in collect_legend_entries(&lines) {
             if entries.iter().all(|other| key(other) != key(&entry)) {
                 entries.push(entry);
@@ -457,7 +546,10 @@ fn arranged(panels: &[Panel], caption: &str, arrangement: Arrangement) -> Result
         cells.push((first..first + columns).collect());
     }
     entries.sort_by_key(|entry| entry.color == CurveStyle::GUIDE.0);
-    let longest = entries.iter().map(|entry| entry.label.chars().count()).max();
+    let longest = entries
+        .iter()
+        .map(|entry| entry.label.chars().count())
+        .max();
     let rows = if abreast {
         panels.len().div_ceil(2)
     } else {
@@ -470,8 +562,14 @@ fn arranged(panels: &[Panel], caption: &str, arrangement: Arrangement) -> Result
         .with_max_cols(abreast);
     plots.push(vec![Plot::LegendPlot(legend.without_box())]);
     // A small font at a large scale: longer samples of the lines beside text of the usual size.
-    let layout = Layout::new((0.0, 1.0), (0.0, 1.0)).with_scale(1.5).with_body_size(8);
-    layouts.push(layout.with_force_margins(16.0, 0.0).with_force_margins_y(6.0, 0.0));
+    let layout = Layout::new((0.0, 1.0), (0.0, 1.0))
+        .with_scale(1.5)
+        .with_body_size(8);
+    layouts.push(
+        layout
+            .with_force_margins(16.0, 0.0)
+            .with_force_margins_y(6.0, 0.0),
+    );
     cells.push(vec![0, 1]);
 
     let letters: Vec<String> = ('A'..='Z').take(panels.len()).map(String::from).collect();
@@ -479,7 +577,10 @@ fn arranged(panels: &[Panel], caption: &str, arrangement: Arrangement) -> Result
         .with_structure(cells)
         .with_plots(plots)
         .with_layouts(layouts)
-        .with_labels_custom(letters.iter().map(String::as_str).collect(), LabelConfig::default())
+        .with_labels_custom(
+            letters.iter().map(String::as_str).collect(),
+            LabelConfig::default(),
+        )
         .with_padding(MARGIN)
         .with_cell_size((PAGE - 2.0 * MARGIN - 15.0) / 2.0, 290.0)
         .with_row_height(0, legend_height)
@@ -489,14 +590,25 @@ fn arranged(panels: &[Panel], caption: &str, arrangement: Arrangement) -> Result
 
 fn curves<'a>(motions: &[ImpactMotion<'a>], points: &'a [Vec<(f64, f64)>]) -> Vec<Curve<'a>> {
     let pairs = motions.iter().zip(points);
-    pairs.map(|(m, points)| curve(m.label, points, m.style)).collect()
+    pairs
+        .map(|(m, points)| curve(m.label, points, m.style))
+        .collect()
 }
 
 fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
-    Curve { label, points, style }
+    Curve {
+        label,
+        points,
+        style,
+    }
 }
 
-fn panel<'a>(title: &'a str, labels: [&'a str; 2], curves: Vec<Curve<'a>>, guides: Vec<Guide<'a>>) -> Panel<'a> {
+fn panel<'a>(
+    title: &'a str,
+    labels: [&'a str; 2],
+    curves: Vec<Curve<'a>>,
+    guides: Vec<Guide<'a>>,
+) -> Panel<'a> {
     Panel {
         title,
         x_label: labels[0],
@@ -512,17 +624,23 @@ fn time_points(samples: &[(f64, f64, f64)]) -> Vec<(f64, f64)> {
 }
 
 fn phase_points(samples: &[(f64, f64, f64)]) -> Vec<(f64, f64)> {
-    samples.iter().map(|&(_, x, velocity)| (x, velocity)).collect()
+    samples
+        .iter()
+        .map(|&(_, x, velocity)| (x, velocity))
+        .collect()
 }
 
-/// Words as they stand: the library reads `$...$` as mathematics, and XML has no control characters.
+/// Words as they stand: the library reads `$...$` as mathematics, and XML has no control
+/// characters.
 fn printable(text: &str) -> String {
-    text.replace('$', "\\$")
-        .replace(|c: char| c.is_control() || matches!(c, '\u{FFFE}' | '\u{FFFF}'), " ")
+    text.replace('$', "\\$").replace(
+        |c: char| c.is_control() || matches!(c, '\u{FFFE}' | '\u{FFFF}'),
+        " ",
+    )
 }
 
-/// The scene and its caption as SVG, without the library's version, and with the clip regions, which the library
-/// counts through the life of the process, numbered from 0.
+/// The scene and its caption as SVG, without the library's version, and with the clip regions,
+/// which the library counts through the life of the process, numbered from 0.
 pub(super) fn written(mut scene: Scene, caption: &str) -> String {
     // SVG runs ordinary spaces together.
     let mut lines = wrap_text(&printable(caption.trim()).replace("  ", " \u{a0}"), 106);
@@ -542,10 +660,13 @@ pub(super) fn written(mut scene: Scene, caption: &str) -> String {
             color: None,
         });
     }
-    let clips = scene.elements.iter_mut().filter_map(|element| match element {
-        Primitive::ClipStart { id, .. } => Some(id),
-        _ => None,
-    });
+    let clips = scene
+        .elements
+        .iter_mut()
+        .filter_map(|element| match element {
+            Primitive::ClipStart { id, .. } => Some(id),
+            _ => None,
+        });
     for (number, id) in clips.enumerate() {
         let (old, new) = (format!("\"{id}\""), format!("clip-{number}"));
         for region in &mut scene.defs {
@@ -555,11 +676,12 @@ pub(super) fn written(mut scene: Scene, caption: &str) -> String {
     }
     let svg = SvgBackend::new().with_pretty(true).render_scene(&scene);
     // A mitred corner of a thick line sticks out: a graze would seem to go far into the barrier.
-    svg.replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1).replacen(
-        &format!("  <!-- Generated by kuva {} -->\n", kuva::VERSION),
-        "",
-        1,
-    )
+    svg.replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1)
+        .replacen(
+            &format!("  <!-- Generated by kuva {} -->\n", kuva::VERSION),
+            "",
+            1,
+        )
 }
 
 #[cfg(test)]
@@ -569,7 +691,12 @@ mod tests {
 
     const WAVE: [(f64, f64); 4] = [(0.0, 0.0), (1.0, 2.0), (2.0, -1.0), (3.0, 0.5)];
 
-    fn one(y_scale: Scale, label: &str, points: &[(f64, f64)], guides: Vec<Guide>) -> Result<String, FigureError> {
+    fn one(
+        y_scale: Scale,
+        label: &str,
+        points: &[(f64, f64)],
+        guides: Vec<Guide>,
+    ) -> Result<String, FigureError> {
         let curves = vec![curve(label, points, CurveStyle::FORMULA)];
         let panel = panel("T", ["x (s)", "y (rad)"], curves, guides);
         figure(&[Panel { y_scale, ..panel }], "<svg>")
@@ -586,7 +713,10 @@ mod tests {
             .map(|i| f64::from(i) / 8.0)
             .map(|t| (t, t.cos(), -t.sin()))
             .collect();
-        let motions = [("Runge-Kutta", CurveStyle::RUNGE_KUTTA), ("paper", CurveStyle::FORMULA)];
+        let motions = [
+            ("Runge-Kutta", CurveStyle::RUNGE_KUTTA),
+            ("paper", CurveStyle::FORMULA),
+        ];
         let motion = |(label, style)| ImpactMotion {
             label,
             style,
@@ -617,10 +747,22 @@ mod tests {
             "barrier x_c",
             "End.",
         ] {
-            assert_eq!(svg.matches(&format!(">{words}</text>")).count(), 1, "{words}");
+            assert_eq!(
+                svg.matches(&format!(">{words}</text>")).count(),
+                1,
+                "{words}"
+            );
         }
-        assert_eq!((svg.matches("<clipPath").count(), svg.matches("<path").count()), (3, 9));
-        assert!(svg.find(CurveStyle::RUNGE_KUTTA.0).unwrap() < svg.find(CurveStyle::FORMULA.0).unwrap());
+        assert_eq!(
+            (
+                svg.matches("<clipPath").count(),
+                svg.matches("<path").count()
+            ),
+            (3, 9)
+        );
+        assert!(
+            svg.find(CurveStyle::RUNGE_KUTTA.0).unwrap() < svg.find(CurveStyle::FORMULA.0).unwrap()
+        );
     }
 
     #[test]
@@ -641,13 +783,28 @@ mod tests {
     #[test]
     fn words_stand_as_they_are() {
         let svg = one(Scale::Linear, "a < b & $x^2$ \u{1}", &WAVE, vec![]).unwrap();
-        assert!(svg.contains(">a &lt; b &amp; $x^2$ ") && svg.contains(">&lt;svg&gt;<") && !svg.contains('\u{1}'));
+        assert!(
+            svg.contains(">a &lt; b &amp; $x^2$ ")
+                && svg.contains(">&lt;svg&gt;<")
+                && !svg.contains('\u{1}')
+        );
     }
 
     #[test]
     fn a_power_of_ten_moves_from_the_numbers_to_the_label() {
-        let draw = |factor: f64| one(Scale::Linear, "", &WAVE.map(|(x, y)| (x, y * factor)), vec![]).unwrap();
-        assert_eq!((path(&draw(1.0)).len(), path(&draw(1e-7))), (1, path(&draw(1.0))));
+        let draw = |factor: f64| {
+            one(
+                Scale::Linear,
+                "",
+                &WAVE.map(|(x, y)| (x, y * factor)),
+                vec![],
+            )
+            .unwrap()
+        };
+        assert_eq!(
+            (path(&draw(1.0)).len(), path(&draw(1e-7))),
+            (1, path(&draw(1.0)))
+        );
         assert!(draw(1e-7).contains(">y (10⁻⁷ rad)<") && draw(1.0).contains(">y (rad)<"));
         assert!(!draw(1e-310).contains("NaN") && !draw(8e307).contains("inf"));
     }
@@ -659,7 +816,10 @@ mod tests {
         let svg = draw(&errors).unwrap();
         assert!(svg.contains(">10⁻¹⁸<") && svg.contains(">10⁻¹²<"));
         assert_eq!(path(&svg), path(&draw(&errors[1..]).unwrap()));
-        assert!(matches!(draw(&errors[..2]), Err(FigureError::TooFewPoints(_))));
+        assert!(matches!(
+            draw(&errors[..2]),
+            Err(FigureError::TooFewPoints(_))
+        ));
         let refused = draw(&[(0.0, 1.0), (1.0, -0.5)]).unwrap_err().to_string();
         assert!(
             refused.starts_with("point (1.0, -0.5) of \"e\" in panel \"T\""),
@@ -684,7 +844,9 @@ mod tests {
         };
         let svg = draw(Scale::Logarithmic);
         assert!(
-            ["10⁴", "10⁹"].iter().all(|tick| svg.contains(&format!(">{tick}<"))),
+            ["10⁴", "10⁹"]
+                .iter()
+                .all(|tick| svg.contains(&format!(">{tick}<"))),
             "{svg}"
         );
         assert_ne!(path(&svg), path(&draw(Scale::Linear)));
@@ -693,7 +855,10 @@ mod tests {
     #[test]
     fn what_cannot_be_drawn_is_refused() {
         assert!(matches!(figure(&[], ""), Err(FigureError::Empty(_))));
-        assert!(matches!(figure(&[Panel::default()], ""), Err(FigureError::Empty(_))));
+        assert!(matches!(
+            figure(&[Panel::default()], ""),
+            Err(FigureError::Empty(_))
+        ));
         assert!(matches!(
             one(Scale::Linear, "", &WAVE[..1], vec![]),
             Err(FigureError::TooFewPoints(_))
@@ -713,7 +878,13 @@ mod tests {
         }
         let [formula, truth] = [1.0, 1.1].map(|end| vec![(0.0, 1.0, 0.0), (end, 0.5, 0.2)]);
         let draw = |formula, truth| {
-            let [coordinate, displacement_unit, time_unit, formula_label, caption] = ["x", "rad", "s", "f", ""];
+            let [
+                coordinate,
+                displacement_unit,
+                time_unit,
+                formula_label,
+                caption,
+            ] = ["x", "rad", "s", "f", ""];
             motion_figure(&MotionFigure {
                 coordinate,
                 displacement_unit,
@@ -726,12 +897,19 @@ mod tests {
             })
         };
         assert_eq!(draw(&formula, &truth), Err(FigureError::DifferentTimes(1)));
-        assert!(draw(&truth, &truth).unwrap().contains(">formula − Runge-Kutta (rad)<"));
+        assert!(
+            draw(&truth, &truth)
+                .unwrap()
+                .contains(">formula − Runge-Kutta (rad)<")
+        );
     }
 
     #[test]
     fn thinning_keeps_every_peak() {
-        let mut points: Vec<_> = (0..100_000).map(f64::from).map(|x| (x, (x / 5e3).sin())).collect();
+        let mut points: Vec<_> = (0..100_000)
+            .map(f64::from)
+            .map(|x| (x, (x / 5e3).sin()))
+            .collect();
         points[77_777].1 = 9.0;
         let kept = thinned(&points);
         assert!(kept.len() <= MOST_POINTS + 1 && kept.contains(&points[77_777]));

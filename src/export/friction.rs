@@ -1,7 +1,8 @@
 //! A study of friction as a table of comma-separated values, and as a picture.
 //!
-//! In: a [`FrictionStudy`]. Out: the rows of the paper's Table 1 beside the computed ones; sgn and arctangent near zero, and the
-//! two motions near rest. As text and LaTeX it is in [`text`](super::text) and [`latex`](super::latex), as a document in `export::json`.
+//! In: a [`FrictionStudy`]. Out: the rows of the paper's Table 1 beside the computed ones; sgn and
+//! arctangent near zero, and the two motions near rest. As text and LaTeX it is in
+//! [`text`](super::text) and [`latex`](super::latex), as a document in `export::json`.
 
 use std::fmt::Write as _;
 
@@ -14,7 +15,8 @@ use crate::impact::friction::FrictionStudy;
 #[cfg(feature = "plot")]
 use crate::impact::{Simulation, friction::arctangent};
 
-/// The two laws at every speed, beside what the paper prints there; a first line of comment has the units.
+/// The two laws at every speed, beside what the paper prints there; a first line of comment has the
+/// units.
 ///
 /// ```
 /// use lindstedt::impact::friction::{FrictionSetup, study};
@@ -43,7 +45,8 @@ pub fn csv(study: &FrictionStudy) -> String {
     text
 }
 
-/// sgn and arctangent near zero; the two motions from the release near rest; the creep from where Coulomb's law stops.
+/// sgn and arctangent near zero; the two motions from the release near rest; the creep from where
+/// Coulomb's law stops.
 ///
 /// # Errors
 /// As [`figure`].
@@ -63,20 +66,32 @@ pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
     const NEAR_ZERO: f64 = 0.1;
     let near_rest = &study.near_rest;
     let (stop, creep) = (near_rest.stop, &near_rest.creep);
-    let sign = [(-NEAR_ZERO, -1.0), (0.0, -1.0), (0.0, 1.0), (NEAR_ZERO, 1.0)];
+    let sign = [
+        (-NEAR_ZERO, -1.0),
+        (0.0, -1.0),
+        (0.0, 1.0),
+        (NEAR_ZERO, 1.0),
+    ];
     let smooth: Vec<(f64, f64)> = (-200..=200)
         .map(|index| NEAR_ZERO * f64::from(index) / 200.0)
         .map(|speed| (speed, arctangent(speed, std::f64::consts::PI)))
         .collect();
     let from = (stop.t - 10.0).max(0.0);
-    let [coulomb, by_arctangent] = near_rest.motions.each_ref().map(|motion| points(motion, from));
+    let [coulomb, by_arctangent] = near_rest
+        .motions
+        .each_ref()
+        .map(|motion| points(motion, from));
     let crept = points(&creep.motion, 0.0);
     let held = [(0.0, stop.x), (creep.motion.end_time, stop.x)];
     let formula: Vec<(f64, f64)> = crept
         .iter()
         .filter_map(|(t, _)| Some((*t, creep.formula(*t)?)))
         .collect();
-    let curve = |label, points, style| Curve { label, points, style };
+    let curve = |label, points, style| Curve {
+        label,
+        points,
+        style,
+    };
     let mut after = vec![
         curve("sgn", &held, CurveStyle::RUNGE_KUTTA),
         curve("arctangent", &crept, CurveStyle::DIFFERENCE),
@@ -106,7 +121,12 @@ pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
             pair(&sign, &smooth),
             Vec::new(),
         ),
-        panel("Coming to rest", [TIME, PLACE], pair(&coulomb, &by_arctangent), zero()),
+        panel(
+            "Coming to rest",
+            [TIME, PLACE],
+            pair(&coulomb, &by_arctangent),
+            zero(),
+        ),
         panel("From rest where sgn holds it", [TIME, PLACE], after, zero()),
     ];
     let caption = format!(
@@ -123,6 +143,9 @@ pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
 #[cfg(feature = "plot")]
 fn points(motion: &Simulation, from: f64) -> Vec<(f64, f64)> {
     const POINTS: usize = 800;
-    let times = (0..=POINTS).map(|index| from + (motion.end_time - from) * (index as f64 / POINTS as f64));
-    times.filter_map(|t| motion.path.at(t).map(|(x, _)| (t, x))).collect()
+    let times =
+        (0..=POINTS).map(|index| from + (motion.end_time - from) * (index as f64 / POINTS as f64));
+    times
+        .filter_map(|t| motion.path.at(t).map(|(x, _)| (t, x)))
+        .collect()
 }

@@ -1,8 +1,9 @@
-//! Documents as a page that stands alone: one file with its formulas, tables and picture in it, for a browser or a printer.
+//! Documents as a page that stands alone: one file with its formulas, tables and picture in it, for
+//! a browser or a printer.
 //!
-//! In come a document of [`report`](crate::report), or a text, and what belongs on its page; out goes HTML. Formulas are those of the LaTeX
-//! format, set as MathML Core, which browsers draw without help; nothing is loaded from anywhere. The page is the same byte for
-//! byte on every run.
+//! In come a document of [`report`](crate::report), or a text, and what belongs on its page; out
+//! goes HTML. Formulas are those of the LaTeX format, set as MathML Core, which browsers draw
+//! without help; nothing is loaded from anywhere. The page is the same byte for byte on every run.
 
 mod math;
 mod words;
@@ -55,7 +56,9 @@ pub fn document(document: &Document, page: &Page) -> String {
         section.iter().for_each(|block| body.add(block));
         body.flush();
     }
-    let derivation = page.derivation.map(|(solution, open)| (steps::rows(solution), open));
+    let derivation = page
+        .derivation
+        .map(|(solution, open)| (steps::rows(solution), open));
     if let Some((rows, open)) = derivation.filter(|(rows, _)| !rows.is_empty()) {
         let open = if open { " open" } else { "" };
         let rows = typesetter.display(&rows);
@@ -87,7 +90,10 @@ fn heading(page: &Page) -> String {
 /// assert!(page.contains("<pre>a &lt; b\n</pre>"));
 /// ```
 pub fn lines(text: &str, page: &Page) -> String {
-    whole(&format!("{}<pre>{}</pre>\n", heading(page), escaped(text)), page)
+    whole(
+        &format!("{}<pre>{}</pre>\n", heading(page), escaped(text)),
+        page,
+    )
 }
 
 /// The page around its body.
@@ -118,9 +124,11 @@ fn scaled(picture: &str) -> String {
         rest.split_once('"').map(|(value, _)| value)
     };
     match (attribute("width"), attribute("height")) {
-        (Some(width), Some(height)) if !picture.contains("viewBox") => {
-            picture.replacen("<svg ", &format!("<svg viewBox=\"0 0 {width} {height}\" "), 1)
-        }
+        (Some(width), Some(height)) if !picture.contains("viewBox") => picture.replacen(
+            "<svg ",
+            &format!("<svg viewBox=\"0 0 {width} {height}\" "),
+            1,
+        ),
         _ => picture.to_owned(),
     }
 }
@@ -137,7 +145,9 @@ struct Body<'a> {
 impl Body<'_> {
     fn add(&mut self, block: &Block) {
         let question = match block {
-            Block::Question(equation) | Block::Truth { equation, .. } => Some(latex::equation(equation)),
+            Block::Question(equation) | Block::Truth { equation, .. } => {
+                Some(latex::equation(equation))
+            }
             Block::QuestionAsTyped(equation) => Some(latex::typed(equation)),
             _ => None,
         };
@@ -151,7 +161,9 @@ impl Body<'_> {
         }
         match block {
             // With the columns that only text and pages have room for.
-            Block::Methods { rows, tolerance, .. } => self.table(&methods(rows, *tolerance)),
+            Block::Methods {
+                rows, tolerance, ..
+            } => self.table(&methods(rows, *tolerance)),
             // A heading here, a row of its equations in an article.
             Block::Reading { .. } => {}
             _ => match latex::setting(block) {
@@ -193,7 +205,10 @@ impl Body<'_> {
                 let names: Vec<&str> = names.iter().map(|name| name.written()).collect();
                 paragraph(&format!("for {}:", names.join(", ")))
             }
-            Block::Entries { heading: of, entries } => heading(of) + &definitions("long", entries),
+            Block::Entries {
+                heading: of,
+                entries,
+            } => heading(of) + &definitions("long", entries),
             Block::Facts(facts) => definitions("", facts),
             Block::Judged {
                 verification,
@@ -201,16 +216,23 @@ impl Body<'_> {
                 hbar,
                 tolerance,
             } => {
-                let (of, facts) = text::judgement(verification, *series_of_omega, *hbar, *tolerance);
+                let (of, facts) =
+                    text::judgement(verification, *series_of_omega, *hbar, *tolerance);
                 heading(&of) + &definitions("", &facts)
             }
-            Block::Truth { at, frequency, .. } => paragraph(&text::comparison::true_frequency(at, frequency)),
-            Block::Refused(refused) => heading("Not applicable") + &definitions("long", &refusals(refused)),
+            Block::Truth { at, frequency, .. } => {
+                paragraph(&text::comparison::true_frequency(at, frequency))
+            }
+            Block::Refused(refused) => {
+                heading("Not applicable") + &definitions("long", &refusals(refused))
+            }
             Block::TrueMotion(lines) => heading("True motion") + &list(lines),
-            Block::Motion(solution) => match solution.displacement.is_zero() && solution.closed_motion.is_none() {
-                true => paragraph(text::without_motion(solution)),
-                false => String::new(),
-            },
+            Block::Motion(solution) => {
+                match solution.displacement.is_zero() && solution.closed_motion.is_none() {
+                    true => paragraph(text::without_motion(solution)),
+                    false => String::new(),
+                }
+            }
             Block::Quantities {
                 columns,
                 deviations,
@@ -231,20 +253,30 @@ impl Body<'_> {
                     );
                     (column.name(), words)
                 };
-                let facts: Vec<(&str, String)> = columns.iter().zip(deviations.iter().zip(shapes)).map(of).collect();
+                let facts: Vec<(&str, String)> = columns
+                    .iter()
+                    .zip(deviations.iter().zip(shapes))
+                    .map(of)
+                    .collect();
                 heading("Largest deviation") + &definitions("", &facts)
             }
-            Block::Verdicts { verdicts, tolerance } => {
+            Block::Verdicts {
+                verdicts,
+                tolerance,
+            } => {
                 let within = significant(100.0 * tolerance, 3);
                 let facts = verdicts
                     .iter()
                     .map(|(reading, verdict)| (reading.name(), verdict.name().to_owned()));
-                heading(&format!("Verdict: every number and phase within {within} %"))
-                    + &definitions("", &facts.collect::<Vec<_>>())
+                heading(&format!(
+                    "Verdict: every number and phase within {within} %"
+                )) + &definitions("", &facts.collect::<Vec<_>>())
             }
-            Block::Shortcoming { reading, errors, cause } => {
-                paragraph(text::impact::shortcoming(*reading, errors, cause).trim())
-            }
+            Block::Shortcoming {
+                reading,
+                errors,
+                cause,
+            } => paragraph(text::impact::shortcoming(*reading, errors, cause).trim()),
             // Formulas and tables have been set.
             Block::Question(_)
             | Block::QuestionAsTyped(_)
@@ -277,7 +309,13 @@ impl Body<'_> {
             first.is_none_or(|first| first.is_ascii_digit() || "+-<".contains(first))
         };
         let place = |(column, place): (usize, char)| {
-            let numbers = || table.rows.iter().filter_map(|row| row.get(column)).all(is_number);
+            let numbers = || {
+                table
+                    .rows
+                    .iter()
+                    .filter_map(|row| row.get(column))
+                    .all(is_number)
+            };
             match place == 'r' && numbers() {
                 true => " class=\"number\"",
                 false => "",
@@ -286,8 +324,12 @@ impl Body<'_> {
         let places: Vec<&str> = table.places.chars().enumerate().map(place).collect();
         let line = |cells: &[String], tag: &str| {
             let cells = cells.iter().zip(&places);
-            let cells =
-                cells.map(|(cell, place)| format!("<{tag}{place}>{}</{tag}>", verdict(&self.typesetter.mixed(cell))));
+            let cells = cells.map(|(cell, place)| {
+                format!(
+                    "<{tag}{place}>{}</{tag}>",
+                    verdict(&self.typesetter.mixed(cell))
+                )
+            });
             format!("<tr>{}</tr>\n", cells.collect::<String>())
         };
         let rows: String = table.rows.iter().map(|row| line(row, "td")).collect();
@@ -318,7 +360,8 @@ fn aside<'a>(block: &Block<'a>) -> Option<&'a str> {
 /// Every method with its numbers and its formula.
 fn methods(rows: &[MethodRow], tolerance: f64) -> Table {
     let cells = text::comparison::cells(rows, tolerance);
-    let formulas = std::iter::once("formula".to_owned()).chain(rows.iter().map(latex::comparison::with_hbar));
+    let formulas =
+        std::iter::once("formula".to_owned()).chain(rows.iter().map(latex::comparison::with_hbar));
     let plain = |cell: String| latex::words(&cell);
     let mut lines: Vec<Vec<String>> = cells
         .into_iter()
@@ -336,9 +379,12 @@ fn methods(rows: &[MethodRow], tolerance: f64) -> Table {
 
 /// Methods that do not apply, those for the same reason together.
 fn refusals(refused: &[Refused]) -> Vec<(String, String)> {
-    let named = refused
-        .iter()
-        .map(|refused| (refused.method.title().to_owned(), refused.reason.reason(refused.method)));
+    let named = refused.iter().map(|refused| {
+        (
+            refused.method.title().to_owned(),
+            refused.reason.reason(refused.method),
+        )
+    });
     let grouped = text::comparison::grouped(named);
     grouped
         .into_iter()

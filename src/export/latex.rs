@@ -1,10 +1,10 @@
 //! Documents as LaTeX: equations, tables, and what is said beside them as comments.
 //!
-//! In come a result or its document of [`report`], or an expression alone; out goes text to be pasted into an article. The
-//! numbers are those of the text format.
+//! In come a result or its document of [`report`], or an expression alone; out goes text to be
+//! pasted into an article. The numbers are those of the text format.
 //!
-//! The output uses `amsmath` and nothing else: `align*`, `\frac`, `\sqrt`, `\left( \right)`, Greek letters and the named
-//! functions.
+//! The output uses `amsmath` and nothing else: `align*`, `\frac`, `\sqrt`, `\left( \right)`, Greek
+//! letters and the named functions.
 
 pub(super) mod comparison;
 mod expression;
@@ -71,7 +71,11 @@ fn scientific_text(text: &str) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn equation(equation: &Equation) -> String {
-    format!("{} = {}", expression(&equation.left), expression(&equation.right))
+    format!(
+        "{} = {}",
+        expression(&equation.left),
+        expression(&equation.right)
+    )
 }
 
 /// An equation, `left = right`, or an expression, as it was typed.
@@ -80,7 +84,9 @@ pub fn equation(equation: &Equation) -> String {
 /// assert_eq!(lindstedt::export::latex::typed("omega0^2*x"), r"\omega_{0}^{2} x");
 /// ```
 pub fn typed(text: &str) -> String {
-    let side = |text: &str| parse_expression(text).map_or_else(|_| text.to_owned(), |side| expression(&side));
+    let side = |text: &str| {
+        parse_expression(text).map_or_else(|_| text.to_owned(), |side| expression(&side))
+    };
     match text.split_once('=') {
         Some((left, right)) => format!("{} = {}", side(left), side(right)),
         None => side(text),
@@ -104,7 +110,8 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Str
     document(&report::solution(solution, verification, DEFAULT_TOLERANCE))
 }
 
-/// The story of an impact: equation, law, three phases by either speed of contact, and the numbers beside Runge-Kutta.
+/// The story of an impact: equation, law, three phases by either speed of contact, and the numbers
+/// beside Runge-Kutta.
 ///
 /// ```
 /// use lindstedt::impact::{Setup, solve};
@@ -241,7 +248,11 @@ fn zero_is(relation: &Sum) -> String {
 
 /// A method that does not apply, and why.
 fn not_applicable(refused: &Refused) -> String {
-    format!("not applicable: {}: {}", refused.method.title(), refused.reason)
+    format!(
+        "not applicable: {}: {}",
+        refused.method.title(),
+        refused.reason
+    )
 }
 
 /// The verdict on every column.
@@ -275,10 +286,15 @@ pub(super) enum Setting {
 
 /// How a block is set, here and wherever formulas are handed on as LaTeX.
 pub(super) fn setting(block: &Block) -> Setting {
-    let equation_of = |left: String, right: String| Setting::Equations(vec![format!("{left} &= {right}")]);
+    let equation_of =
+        |left: String, right: String| Setting::Equations(vec![format!("{left} &= {right}")]);
     match block {
-        Block::Question(question) => Setting::Equations(vec![equation(question).replacen(" = ", " &= ", 1)]),
-        Block::QuestionAsTyped(question) => Setting::Equations(vec![typed(question).replacen(" = ", " &= ", 1)]),
+        Block::Question(question) => {
+            Setting::Equations(vec![equation(question).replacen(" = ", " &= ", 1)])
+        }
+        Block::QuestionAsTyped(question) => {
+            Setting::Equations(vec![typed(question).replacen(" = ", " &= ", 1)])
+        }
         Block::Law { left, right } => equation_of(expression(left), sum(right)),
         Block::Relation(relation) => Setting::Equations(vec![zero_is(relation)]),
         Block::Equality { left, right } => equation_of(expression(left), expression(right)),
@@ -288,7 +304,9 @@ pub(super) fn setting(block: &Block) -> Setting {
             amplitude,
         } => equation_of(symbol(*name), sum(amplitude)),
         Block::Motion(solution) => Setting::Equations(motion(solution)),
-        Block::Definition(definition) => equation_of(symbol(definition.symbol), constant(&definition.meaning)),
+        Block::Definition(definition) => {
+            equation_of(symbol(definition.symbol), constant(&definition.meaning))
+        }
         Block::Value { name, value, .. } => equation_of(symbol(*name), scientific(*value)),
         Block::Reading { reading, .. } => Setting::Equations(vec![impact::reading(*reading)]),
         Block::Fitted {
@@ -297,7 +315,13 @@ pub(super) fn setting(block: &Block) -> Setting {
             rule,
             letters,
             per_stiffness,
-        } => Setting::Equations(vec![impact::fitted(fitted, *barrier, *rule, *letters, *per_stiffness)]),
+        } => Setting::Equations(vec![impact::fitted(
+            fitted,
+            *barrier,
+            *rule,
+            *letters,
+            *per_stiffness,
+        )]),
         Block::Phase { phase, letters, .. } => Setting::Equations(impact::phase(phase, *letters)),
         Block::SiValue {
             name,
@@ -308,10 +332,14 @@ pub(super) fn setting(block: &Block) -> Setting {
         } => Setting::Equations(vec![impact::si_value(name, *formula, *value, unit)]),
         Block::Table { head, rows } => Setting::Table(table::table(head, rows)),
         Block::Methods { rows, at, .. } => Setting::Table(comparison::methods(rows, at)),
-        Block::Quantities { columns, rows, .. } => Setting::Table(impact::quantities(columns, rows)),
+        Block::Quantities { columns, rows, .. } => {
+            Setting::Table(impact::quantities(columns, rows))
+        }
         Block::ContactLaws { rows } => Setting::Table(impact::contact_laws(rows)),
         Block::ImpactMethods { rows, truth, .. } => Setting::Table(impact::methods(rows, *truth)),
-        Block::SiQuantities { columns, rows } => Setting::Table(impact::si_quantities(columns, rows)),
+        Block::SiQuantities { columns, rows } => {
+            Setting::Table(impact::si_quantities(columns, rows))
+        }
         Block::Title { .. }
         | Block::Heading(_)
         | Block::Note(_)
@@ -338,7 +366,9 @@ impl Page {
                 self.flush();
                 self.text.push_str(&table.written());
             }
-            (Setting::Equations(rows), Block::Question(_) | Block::QuestionAsTyped(_)) => self.questions.extend(rows),
+            (Setting::Equations(rows), Block::Question(_) | Block::QuestionAsTyped(_)) => {
+                self.questions.extend(rows)
+            }
             (Setting::Equations(rows), Block::Law { .. }) => self.laws.extend(rows),
             (Setting::Equations(rows), _) => self.rows.extend(rows),
             (Setting::Words, _) => {}
@@ -349,7 +379,9 @@ impl Page {
     /// The words of a block, as comments; an article says the rest in words of its own.
     fn say(&mut self, block: &Block) {
         match block {
-            Block::Title { words, amplitude } => self.comment(Rank::Note, format!("{words}; {amplitude}")),
+            Block::Title { words, amplitude } => {
+                self.comment(Rank::Note, format!("{words}; {amplitude}"))
+            }
             Block::Note(words) | Block::Sentence(words) => self.comment(Rank::Note, words.clone()),
             Block::Remark(words) => self.comment(Rank::Remark, words.clone()),
             Block::Value {
@@ -362,15 +394,22 @@ impl Page {
                 series_of_omega,
                 tolerance,
                 ..
-            } => self.comment(Rank::Verdict, judged(verification, *series_of_omega, *tolerance)),
+            } => self.comment(
+                Rank::Verdict,
+                judged(verification, *series_of_omega, *tolerance),
+            ),
             Block::Truth {
-                equation, frequency, ..
+                equation,
+                frequency,
+                ..
             } => self.comment(Rank::Note, comparison::truth(equation, frequency)),
             Block::Facts(facts) => {
                 let facts = facts.iter().map(|(name, value)| format!("{name}: {value}"));
                 self.comments(Rank::Remark, facts);
             }
-            Block::Refused(refused) => self.comments(Rank::Note, refused.iter().map(not_applicable)),
+            Block::Refused(refused) => {
+                self.comments(Rank::Note, refused.iter().map(not_applicable))
+            }
             Block::TrueMotion(lines) => self.comments(Rank::Note, lines.iter().cloned()),
             Block::Verdicts { verdicts, .. } => self.comment(Rank::Verdict, in_one_line(verdicts)),
             _ => {}
@@ -404,12 +443,18 @@ impl Page {
 
 /// The verdict in one line.
 fn judged(verification: &Verification, series_of_omega: Option<f64>, tolerance: f64) -> String {
-    let error = verification.relative_error.map(|error| match error.abs() < 1e-9 {
-        true => super::text::percent(error),
-        false => decimal(100.0 * error) + " %",
+    let error = verification
+        .relative_error
+        .map(|error| match error.abs() < 1e-9 {
+            true => super::text::percent(error),
+            false => decimal(100.0 * error) + " %",
+        });
+    let other = series_of_omega.map(|other| {
+        format!(
+            "; of the series of {FREQUENCY} itself {} %",
+            decimal(100.0 * other)
+        )
     });
-    let other =
-        series_of_omega.map(|other| format!("; of the series of {FREQUENCY} itself {} %", decimal(100.0 * other)));
     format!(
         "true {FREQUENCY} {}, relative error {} (by {}{}), verdict {}",
         decimal(verification.true_frequency),
@@ -452,7 +497,11 @@ fn motion(solution: &Solution) -> Vec<String> {
     }
     let waves = waves(&solution.displacement, solution);
     let mut lines = terms::lines(&waves, &format!("{coordinate}(t) &= "), "&\\quad ");
-    lines.push(format!("{} &= {}", symbol(solution.phase()), angle(solution)));
+    lines.push(format!(
+        "{} &= {}",
+        symbol(solution.phase()),
+        angle(solution)
+    ));
     lines
 }
 
@@ -465,8 +514,13 @@ fn angle(solution: &Solution) -> String {
     let Some(resonance) = &slow.resonance else {
         return expression(&phase);
     };
-    let driven = Expr::from(i64::from(resonance.times_driving)) * &resonance.driving_frequency * Expr::symbol("t");
-    let angle = Expr::divide(&(driven - phase), &Expr::from(i64::from(resonance.times_linear)));
+    let driven = Expr::from(i64::from(resonance.times_driving))
+        * &resonance.driving_frequency
+        * Expr::symbol("t");
+    let angle = Expr::divide(
+        &(driven - phase),
+        &Expr::from(i64::from(resonance.times_linear)),
+    );
     angle.map_or_else(|_| String::new(), |angle| expression(&angle))
 }
 

@@ -1,9 +1,10 @@
-//! Handing a result on: [`text`] to read, `json` (feature `json`) for programs, [`latex`] for an article, [`code`] to
-//! compute with, `figure` (feature `plot`) to look at, `html` (feature `html`) for all of it on one page.
+//! Handing a result on: [`text`] to read, `json` (feature `json`) for programs, [`latex`] for an
+//! article, [`code`] to compute with, `figure` (feature `plot`) to look at, `html` (feature `html`)
+//! for all of it on one page.
 //!
-//! In come documents of [`report`](crate::report); JSON, pictures, tables of comma-separated values and simulations take the
-//! results themselves. Out goes text in
-//! one format. What is shown was chosen before: a format chooses only its layout.
+//! In come documents of [`report`](crate::report); JSON, pictures, tables of comma-separated values
+//! and simulations take the results themselves. Out goes text in one format. What is shown was
+//! chosen before: a format chooses only its layout.
 
 pub mod catalog;
 pub mod code;
@@ -31,10 +32,14 @@ pub use crate::spelling::{is_invisible, printable, printable_in_line};
 use crate::exact::Doubles;
 use crate::series::FourierSeries;
 
-/// The size of a coefficient that is rounding noise of a motion in numbers: what quadrature leaves of harmonics that are not there.
+/// The size of a coefficient that is rounding noise of a motion in numbers: what quadrature leaves
+/// of harmonics that are not there.
 pub(crate) fn rounding_noise(motion: &FourierSeries<Doubles>) -> f64 {
     /// Beside the largest swing.
     const NOISE: f64 = 1e-14;
     let swing = |k: usize| motion.cosine(k).mean().0.hypot(motion.sine(k).mean().0);
-    NOISE * (1..=motion.highest_harmonic()).map(swing).fold(0.0, f64::max)
+    NOISE
+        * (1..=motion.highest_harmonic())
+            .map(swing)
+            .fold(0.0, f64::max)
 }

@@ -1,4 +1,5 @@
-//! The main mass with its damper as comma-separated values and as a picture; text by [`text::document`](super::text::document).
+//! The main mass with its damper as comma-separated values and as a picture; text by
+//! [`text::document`](super::text::document).
 
 use std::fmt::Write as _;
 
@@ -35,7 +36,8 @@ fn times(report: &PrimaryReport) -> Vec<f64> {
     times
 }
 
-/// Time, angle and its velocity, displacement of the main mass and its velocity, and the energy of both.
+/// Time, angle and its velocity, displacement of the main mass and its velocity, and the energy of
+/// both.
 ///
 /// ```
 /// use lindstedt::impact::primary::simulate_primary;
@@ -76,8 +78,8 @@ pub fn csv(report: &PrimaryReport) -> String {
     text
 }
 
-/// A row for every motion of a sweep: the values that are swept, in their own units, then what came of it. Of a motion that was never begun
-/// the places stay empty.
+/// A row for every motion of a sweep: the values that are swept, in their own units, then what came
+/// of it. Of a motion that was never begun the places stay empty.
 ///
 /// ```
 /// use lindstedt::report::PrimarySweepReport;
@@ -100,12 +102,18 @@ pub fn sweep_csv(report: &PrimarySweepReport) -> String {
         ("length_unit", "m"),
         ("complete", "-"),
     ];
-    let swept = report.parameters.iter().map(|parameter| match parameter.unit() {
-        "" => (parameter.name(), "1"),
-        unit => (parameter.name(), unit),
-    });
+    let swept = report
+        .parameters
+        .iter()
+        .map(|parameter| match parameter.unit() {
+            "" => (parameter.name(), "1"),
+            unit => (parameter.name(), unit),
+        });
     let columns: Vec<(&str, &str)> = swept.chain(RESULTS).collect();
-    let units: Vec<String> = columns.iter().map(|(name, unit)| format!("{name} {unit}")).collect();
+    let units: Vec<String> = columns
+        .iter()
+        .map(|(name, unit)| format!("{name} {unit}"))
+        .collect();
     let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
     let mut text = format!("# units: {}\n{}\n", units.join(", "), names.join(","));
     let or_none = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
@@ -168,8 +176,14 @@ pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
         .into_iter()
         .filter_map(|t| Some((t, motion.at(t)?)))
         .collect();
-    let with: Vec<(f64, f64)> = states.iter().map(|(t, state)| (t * second, state.y * metre)).collect();
-    let angle: Vec<(f64, f64)> = states.iter().map(|(t, state)| (t * second, state.x)).collect();
+    let with: Vec<(f64, f64)> = states
+        .iter()
+        .map(|(t, state)| (t * second, state.y * metre))
+        .collect();
+    let angle: Vec<(f64, f64)> = states
+        .iter()
+        .map(|(t, state)| (t * second, state.x))
+        .collect();
     let energy: Vec<(f64, f64)> = states
         .iter()
         .map(|(t, state)| (t * second, motion.case.energy(*state)))
@@ -179,28 +193,59 @@ pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
     let first: Vec<f64> = states
         .iter()
         .map(|(t, _)| *t)
-        .take_while(|t| *t <= FIRST_SWINGS * std::f64::consts::TAU * (locked / motion.case.primary.stiffness).sqrt())
+        .take_while(|t| {
+            *t <= FIRST_SWINGS
+                * std::f64::consts::TAU
+                * (locked / motion.case.primary.stiffness).sqrt()
+        })
         .collect();
     let early: Vec<(f64, f64)> = with.iter().take(first.len()).copied().collect();
-    let [locked_swings, swings_without] = [locked, without].map(|mass| swings_alone(report, mass, &first));
+    let [locked_swings, swings_without] =
+        [locked, without].map(|mass| swings_alone(report, mass, &first));
     let some_times: Vec<f64> = states.iter().step_by(10).map(|(t, _)| *t).collect();
-    let [locked_decay, decay_without] = [locked, without].map(|mass| decay_alone(report, mass, &some_times));
-    let curve = |label, points, style| Curve { label, points, style };
+    let [locked_decay, decay_without] =
+        [locked, without].map(|mass| decay_alone(report, mass, &some_times));
+    let curve = |label, points, style| Curve {
+        label,
+        points,
+        style,
+    };
     let own = |points| curve("with its damper", points, CurveStyle::DIFFERENCE);
     let (mut all, mut some) = (vec![own(with.as_slice())], vec![own(early.as_slice())]);
     // Driven, the closed forms are those of the long run alone.
     if motion.case.primary.force == 0.0 {
-        some.insert(0, curve("without", swings_without.as_slice(), CurveStyle::RUNGE_KUTTA));
+        some.insert(
+            0,
+            curve(
+                "without",
+                swings_without.as_slice(),
+                CurveStyle::RUNGE_KUTTA,
+            ),
+        );
         some.insert(
             1,
-            curve("damper locked", locked_swings.as_slice(), CurveStyle::SECOND_FORMULA),
+            curve(
+                "damper locked",
+                locked_swings.as_slice(),
+                CurveStyle::SECOND_FORMULA,
+            ),
         );
         if let (Some(locked), Some(without)) = (&locked_decay, &decay_without) {
-            all.push(curve("without", without.as_slice(), CurveStyle::RUNGE_KUTTA));
-            all.push(curve("damper locked", locked.as_slice(), CurveStyle::SECOND_FORMULA));
+            all.push(curve(
+                "without",
+                without.as_slice(),
+                CurveStyle::RUNGE_KUTTA,
+            ));
+            all.push(curve(
+                "damper locked",
+                locked.as_slice(),
+                CurveStyle::SECOND_FORMULA,
+            ));
         }
     }
-    let barriers = [motion.case.model.left, motion.case.model.right].into_iter().flatten();
+    let barriers = [motion.case.model.left, motion.case.model.right]
+        .into_iter()
+        .flatten();
     let barriers = barriers.map(|place| Guide::Y(place, "barrier")).collect();
     const TIME: &str = "time t (s)";
     const PLACE: &str = "displacement y (m)";
@@ -219,13 +264,21 @@ pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
             ..panel(
                 "Pendulum",
                 "angle x (rad)",
-                vec![curve("pendulum", angle.as_slice(), CurveStyle::THIRD_FORMULA)],
+                vec![curve(
+                    "pendulum",
+                    angle.as_slice(),
+                    CurveStyle::THIRD_FORMULA,
+                )],
             )
         },
         panel(
             "Energy of both",
             "energy (m g L)",
-            vec![curve("energy", energy.as_slice(), CurveStyle::THIRD_FORMULA)],
+            vec![curve(
+                "energy",
+                energy.as_slice(),
+                CurveStyle::THIRD_FORMULA,
+            )],
         ),
     ];
     let caption = format!(
@@ -244,7 +297,10 @@ fn swings_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Vec<(f64, f
     let (case, units) = (&report.motion.case, report.units);
     let [.., y, speed] = case.start;
     let height = |t: f64| case.primary.alone_at(mass, [y, speed], t) * units.length;
-    times.iter().map(|t| (t * units.time(), height(*t))).collect()
+    times
+        .iter()
+        .map(|t| (t * units.time(), height(*t)))
+        .collect()
 }
 
 /// The amplitude of these swings; nothing where the mass creeps back.
@@ -259,7 +315,8 @@ fn decay_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Option<Vec<(
     points.collect()
 }
 
-/// The amplitude of the main mass in the long run, or its rest time where nothing drives it, over the values of one parameter.
+/// The amplitude of the main mass in the long run, or its rest time where nothing drives it, over
+/// the values of one parameter.
 ///
 /// # Errors
 /// More than one parameter, or as [`figure`].
@@ -286,7 +343,10 @@ pub fn sweep_picture(report: &PrimarySweepReport) -> Result<String, FigureError>
     };
     let driven = report.is_driven();
     let points = |value: &dyn Fn(&PrimaryRow, &Units) -> Option<f64>| -> Vec<(f64, f64)> {
-        let rows = axis.values().iter().zip(report.rows.iter().zip(report.units));
+        let rows = axis
+            .values()
+            .iter()
+            .zip(report.rows.iter().zip(report.units));
         let mut points: Vec<(f64, f64)> = rows
             .filter_map(|(place, (row, units))| Some((*place, value(row, units)?)))
             .collect();
@@ -304,7 +364,10 @@ pub fn sweep_picture(report: &PrimarySweepReport) -> Result<String, FigureError>
         true => row.is_begun().then_some(row.amplitude * units.length),
         false => Some(rest_time(row)? * units.time()),
     });
-    let (locked, without) = (alone(|others| others.locked), alone(|others| others.without));
+    let (locked, without) = (
+        alone(|others| others.locked),
+        alone(|others| others.without),
+    );
     let curves = [
         ("without", &without, CurveStyle::RUNGE_KUTTA),
         ("damper locked", &locked, CurveStyle::SECOND_FORMULA),
@@ -323,13 +386,21 @@ pub fn sweep_picture(report: &PrimarySweepReport) -> Result<String, FigureError>
             false => "Rest of the main mass",
         },
         x_label: &x_label,
-        y_label: if driven { "amplitude (m)" } else { "rest time (s)" },
+        y_label: if driven {
+            "amplitude (m)"
+        } else {
+            "rest time (s)"
+        },
         x_scale: match is_logarithmic {
             true => Scale::Logarithmic,
             false => Scale::Linear,
         },
         curves: curves
-            .map(|(label, points, style)| Curve { label, points, style })
+            .map(|(label, points, style)| Curve {
+                label,
+                points,
+                style,
+            })
             .collect(),
         ..Panel::default()
     };
@@ -337,7 +408,9 @@ pub fn sweep_picture(report: &PrimarySweepReport) -> Result<String, FigureError>
         true => {
             "Locked and without: in closed form; with its damper: the largest displacement in the last quarter of each run."
         }
-        false => "When the envelope of the main mass is down to a tenth. Locked and without: in closed form.",
+        false => {
+            "When the envelope of the main mass is down to a tenth. Locked and without: in closed form."
+        }
     };
     figure(&[panel], caption)
 }

@@ -1,4 +1,5 @@
-//! Branches of steady states as comma-separated values and as a picture; text by [`text::document`](super::text::document).
+//! Branches of steady states as comma-separated values and as a picture; text by
+//! [`text::document`](super::text::document).
 
 use std::fmt::Write as _;
 
@@ -8,8 +9,8 @@ use crate::response::Response;
 #[cfg(feature = "plot")]
 use crate::response::{Point, bifurcation::BifurcationKind};
 
-/// Every point of every branch, the bifurcations, the backbone and the simulations, a row each; a first line of comment says what the
-/// columns are.
+/// Every point of every branch, the bifurcations, the backbone and the simulations, a row each; a
+/// first line of comment says what the columns are.
 ///
 /// ```
 /// use lindstedt::response::{Question, respond};
@@ -89,7 +90,11 @@ pub fn csv(response: &Response) -> String {
         );
     }
     for point in response.backbone.iter().flatten() {
-        let _ = writeln!(text, "backbone,,{},{},,,,,", point.parameter, point.amplitude);
+        let _ = writeln!(
+            text,
+            "backbone,,{},{},,,,,",
+            point.parameter, point.amplitude
+        );
     }
     text
 }
@@ -98,7 +103,8 @@ pub fn csv(response: &Response) -> String {
 #[cfg(feature = "plot")]
 type Line = Vec<(f64, f64)>;
 
-/// The ordinates of the panels: of motions of several periods of the drive the peak, of self-excited ones the frequency as well.
+/// The ordinates of the panels: of motions of several periods of the drive the peak, of
+/// self-excited ones the frequency as well.
 #[cfg(feature = "plot")]
 #[derive(Clone, Copy)]
 enum Height {
@@ -126,12 +132,18 @@ impl Height {
     }
 }
 
-/// The pieces of a branch in the parameter and the height that are stable, or that are not; neighbouring pieces share a point.
+/// The pieces of a branch in the parameter and the height that are stable, or that are not;
+/// neighbouring pieces share a point.
 #[cfg(feature = "plot")]
 fn pieces(height: Height, points: &[Point], stable: bool) -> Vec<Line> {
     let mut pieces: Vec<Line> = Vec::new();
     let mut open = false;
-    let place = |point: &Point| (point.parameter, height.of(point.amplitude, point.peak, point.frequency));
+    let place = |point: &Point| {
+        (
+            point.parameter,
+            height.of(point.amplitude, point.peak, point.frequency),
+        )
+    };
     for pair in points.windows(2) {
         let [from, to] = pair else { continue };
         if (to.stable == Some(true)) != stable {
@@ -166,13 +178,25 @@ const MARKS: [(BifurcationKind, &str, CurveStyle); 6] = [
         "Neimark-Sacker",
         CurveStyle::FOURTH_MARKED_POINTS,
     ),
-    (BifurcationKind::Hopf, "Hopf", CurveStyle::SECOND_MARKED_POINTS),
-    (BifurcationKind::Centre, "centre", CurveStyle::THIRD_MARKED_POINTS),
+    (
+        BifurcationKind::Hopf,
+        "Hopf",
+        CurveStyle::SECOND_MARKED_POINTS,
+    ),
+    (
+        BifurcationKind::Centre,
+        "centre",
+        CurveStyle::THIRD_MARKED_POINTS,
+    ),
 ];
 
 /// The curves of a panel, with what they are called.
 #[cfg(feature = "plot")]
-fn curves<'a>(response: &Response, height: Height, slow_title: &'a str) -> Vec<(&'a str, Line, CurveStyle)> {
+fn curves<'a>(
+    response: &Response,
+    height: Height,
+    slow_title: &'a str,
+) -> Vec<(&'a str, Line, CurveStyle)> {
     let mut drawn: Vec<(&str, Line, CurveStyle)> = Vec::new();
     let mut draw = |label: &'a str, lines: Vec<Line>, style: CurveStyle| {
         drawn.extend(lines.into_iter().map(|points| (label, points, style)));
@@ -185,29 +209,53 @@ fn curves<'a>(response: &Response, height: Height, slow_title: &'a str) -> Vec<(
     };
     if response.question.periods == 1 {
         let curves = response.backbone.iter();
-        let lines = curves.map(|curve| curve.iter().map(|point| (point.parameter, point.amplitude)).collect());
-        draw("free, without damping", lines.collect(), CurveStyle::BACKBONE);
+        let lines = curves.map(|curve| {
+            curve
+                .iter()
+                .map(|point| (point.parameter, point.amplitude))
+                .collect()
+        });
+        draw(
+            "free, without damping",
+            lines.collect(),
+            CurveStyle::BACKBONE,
+        );
     }
     draw("unstable", of_stability(false), CurveStyle::UNSTABLE);
     draw("stable", of_stability(true), CurveStyle::DIFFERENCE);
     let states = response.slow.iter().flat_map(|slow| &slow.states);
-    let states = states.map(|state| (state.parameter, state.amplitude)).collect();
+    let states = states
+        .map(|state| (state.parameter, state.amplitude))
+        .collect();
     draw(slow_title, vec![states], CurveStyle::SLOW);
     let simulated = response.simulated.iter().map(|found| {
         let height = height.of(found.amplitude, found.peak, found.frequency);
         (found.parameter, height)
     });
-    draw("simulated", vec![simulated.collect()], CurveStyle::SIMULATED);
+    draw(
+        "simulated",
+        vec![simulated.collect()],
+        CurveStyle::SIMULATED,
+    );
     for (kind, label, style) in MARKS {
-        let of_kind = response.bifurcations.iter().filter(|found| found.kind == kind);
-        let places = of_kind.map(|found| (found.parameter, height.of(found.amplitude, found.peak, found.frequency)));
+        let of_kind = response
+            .bifurcations
+            .iter()
+            .filter(|found| found.kind == kind);
+        let places = of_kind.map(|found| {
+            (
+                found.parameter,
+                height.of(found.amplitude, found.peak, found.frequency),
+            )
+        });
         draw(label, vec![places.collect()], style);
     }
     drawn.retain(|(_, points, _)| !points.is_empty());
     drawn
 }
 
-/// The branches, stable ones solid and unstable ones dashed, the backbone, simulations as dots, bifurcations marked.
+/// The branches, stable ones solid and unstable ones dashed, the backbone, simulations as dots,
+/// bifurcations marked.
 ///
 /// # Errors
 /// As [`figure`].
@@ -229,8 +277,10 @@ pub fn picture(response: &Response) -> Result<String, FigureError> {
     };
     let title = response.slow.as_ref().map(|slow| slow.solution.title());
     let title = title.unwrap_or_default();
-    let drawn: Vec<Vec<(&str, Line, CurveStyle)>> =
-        heights.iter().map(|height| curves(response, *height, &title)).collect();
+    let drawn: Vec<Vec<(&str, Line, CurveStyle)>> = heights
+        .iter()
+        .map(|height| curves(response, *height, &title))
+        .collect();
     let panels: Vec<Panel> = heights
         .iter()
         .zip(&drawn)
@@ -254,7 +304,13 @@ pub fn picture(response: &Response) -> Result<String, FigureError> {
         .map(|(name, value)| format!("{name} = {}", super::decimal(value)))
         .collect();
     let equation = asked.oscillator.equation();
-    let values = values.iter().map(|value| format!("; {value}")).collect::<String>();
-    let caption = format!("{} = 0{values}; harmonics 0 to {}.", equation.left, response.harmonics);
+    let values = values
+        .iter()
+        .map(|value| format!("; {value}"))
+        .collect::<String>();
+    let caption = format!(
+        "{} = 0{values}; harmonics 0 to {}.",
+        equation.left, response.harmonics
+    );
     figure(&panels, &caption)
 }

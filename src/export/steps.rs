@@ -1,4 +1,5 @@
-//! The derivation of an answer, for someone who wants to follow it with a pencil: as text, and as LaTeX for a slide.
+//! The derivation of an answer, for someone who wants to follow it with a pencil: as text, and as
+//! LaTeX for a slide.
 
 use std::fmt::Write as _;
 
@@ -19,13 +20,18 @@ fn is_homotopy(solution: &Solution) -> bool {
     solution.method.counts() == Counts::PowersOfBookkeeping
 }
 
-/// What the orders `y_n` are multiplied by: the amplitude, or that of a limit cycle before its corrections.
+/// What the orders `y_n` are multiplied by: the amplitude, or that of a limit cycle before its
+/// corrections.
 fn unit(solution: &Solution) -> Symbol {
-    let leading = solution.steps.first().and_then(|step| step.amplitude.as_ref());
+    let leading = solution
+        .steps
+        .first()
+        .and_then(|step| step.amplitude.as_ref());
     leading.map_or(solution.amplitude.symbol(), |condition| condition.unknown)
 }
 
-/// The letters of the orders and of the corrections of the frequency, `y` and `W`, or what is free of the equation's names.
+/// The letters of the orders and of the corrections of the frequency, `y` and `W`, or what is free
+/// of the equation's names.
 fn letters(solution: &Solution) -> [String; 2] {
     ["y", "W"].map(|letter| fresh_stem(letter, &solution.names()))
 }
@@ -35,7 +41,8 @@ fn indexed(letter: &str, order: u32) -> String {
     symbol(Symbol::new(&format!("{letter}{order}")))
 }
 
-/// The derivation as text: the orders of an expansion, or the lines of any other method; empty where there is nothing to show.
+/// The derivation as text: the orders of an expansion, or the lines of any other method; empty
+/// where there is nothing to show.
 ///
 /// ```
 /// use lindstedt::{Options, Oscillator, solve};
@@ -53,7 +60,10 @@ pub fn text(solution: &Solution) -> String {
     let mut text = String::from("Derivation\n");
     if !solution.steps.is_empty() {
         let (name, unit, [y, w]) = (solution.coordinate(), unit(solution), letters(solution));
-        let (p, omega0) = (fresh("p", &solution.names()), solution.linear_frequency_name());
+        let (p, omega0) = (
+            fresh("p", &solution.names()),
+            solution.linear_frequency_name(),
+        );
         let phase = solution.phase();
         let frame = match is_homotopy(solution) {
             true => [
@@ -65,7 +75,9 @@ pub fn text(solution: &Solution) -> String {
                 ),
             ],
             false => [
-                format!("{name} = {unit}*({y}0 + {y}1 + {y}2 + ...), {phase} = {FREQUENCY}*t, derivatives in {phase}"),
+                format!(
+                    "{name} = {unit}*({y}0 + {y}1 + {y}2 + ...), {phase} = {FREQUENCY}*t, derivatives in {phase}"
+                ),
                 format!(
                     "{FREQUENCY}^2 = {omega0}^2*(1 + {w}1 + {w}2 + ...); each order carries its power of the small parameter"
                 ),
@@ -138,7 +150,12 @@ fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
         }
     }
     lines.push(format!("    with                {}", conditions.join(", ")));
-    if let Some(AmplitudeCondition { sine, unknown, value }) = &step.amplitude {
+    if let Some(AmplitudeCondition {
+        sine,
+        unknown,
+        value,
+    }) = &step.amplitude
+    {
         lines.push(format!(
             "    no secular sin({phase}) at order {}:  {} = 0",
             n + 1,
@@ -148,7 +165,9 @@ fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
             0 => "the amplitude of the limit cycle".to_owned(),
             _ => format!("the cos({phase}) of {y}{n}"),
         };
-        lines.push(format!("    fixes               {unknown} = {value}, {what}"));
+        lines.push(format!(
+            "    fixes               {unknown} = {value}, {what}"
+        ));
     }
     lines.push(format!("    {y}{n} = {}", waves(&step.displacement)));
     lines
@@ -185,7 +204,10 @@ pub fn latex(solution: &Solution) -> String {
     let _letters = solution.letters().in_force();
     match rows(solution) {
         rows if rows.is_empty() => String::new(),
-        rows => format!("\\begin{{align*}}\n{}\n\\end{{align*}}\n", rows.join(" \\\\\n")),
+        rows => format!(
+            "\\begin{{align*}}\n{}\n\\end{{align*}}\n",
+            rows.join(" \\\\\n")
+        ),
     }
 }
 
@@ -193,14 +215,27 @@ pub fn latex(solution: &Solution) -> String {
 pub(super) fn rows(solution: &Solution) -> Vec<String> {
     let mut lines = Vec::new();
     if !solution.steps.is_empty() {
-        let (name, unit, omega) = (symbol(solution.coordinate()), symbol(unit(solution)), symbol(FREQUENCY));
+        let (name, unit, omega) = (
+            symbol(solution.coordinate()),
+            symbol(unit(solution)),
+            symbol(FREQUENCY),
+        );
         let [y, w] = letters(solution);
-        let [p, omega0] = [fresh("p", &solution.names()), solution.linear_frequency_name()].map(symbol);
-        let ([y0, y1, y2], [w1, w2]) = ([0, 1, 2].map(|n| indexed(&y, n)), [1, 2].map(|n| indexed(&w, n)));
+        let [p, omega0] = [
+            fresh("p", &solution.names()),
+            solution.linear_frequency_name(),
+        ]
+        .map(symbol);
+        let ([y0, y1, y2], [w1, w2]) = (
+            [0, 1, 2].map(|n| indexed(&y, n)),
+            [1, 2].map(|n| indexed(&w, n)),
+        );
         let (motion, squared) = match is_homotopy(solution) {
             true => (
                 format!("{y0} + {p} {y1} + {p}^{{2}} {y2} + \\dots"),
-                format!("{omega0}^{{2}} &= {omega}^{{2}} \\left(1 - {p} {w1} - {p}^{{2}} {w2} - \\dots\\right)"),
+                format!(
+                    "{omega0}^{{2}} &= {omega}^{{2}} \\left(1 - {p} {w1} - {p}^{{2}} {w2} - \\dots\\right)"
+                ),
             ),
             false => (
                 format!("{y0} + {y1} + {y2} + \\dots"),
@@ -282,7 +317,11 @@ pub(super) fn line_as_latex(line: &Line) -> Vec<String> {
     }
     if let Some((first, rest)) = line.equal.split_first() {
         let rest: Vec<String> = rest.iter().map(formula_as_latex).collect();
-        rows.push(format!("{} &= {}", formula_as_latex(first), rest.join(" = ")));
+        rows.push(format!(
+            "{} &= {}",
+            formula_as_latex(first),
+            rest.join(" = ")
+        ));
     }
     rows
 }
@@ -300,7 +339,9 @@ fn formula_as_latex(formula: &Formula) -> String {
             let linear = latex::expression(&(square * &Expr::from(*of)));
             format!("{}'' + {linear}", symbol(*of))
         }
-        Formula::AtZero { of, derivatives } => format!("{}{}(0)", symbol(*of), "'".repeat(*derivatives)),
+        Formula::AtZero { of, derivatives } => {
+            format!("{}{}(0)", symbol(*of), "'".repeat(*derivatives))
+        }
         Formula::Integral {
             factor,
             from,

@@ -1,7 +1,7 @@
 //! Documents as text that reads like a textbook. Formulas print so that they can be typed back in.
 //!
-//! In come a result or its document of [`report`], and a width; out goes text of plain letters, of lines no longer than that
-//! where words allow it. Relative errors stand in percent.
+//! In come a result or its document of [`report`], and a width; out goes text of plain letters, of
+//! lines no longer than that where words allow it. Relative errors stand in percent.
 
 pub(super) mod comparison;
 pub(super) mod impact;
@@ -55,13 +55,21 @@ fn size_in_percent(size: f64) -> String {
 /// assert!(text.contains(&solution.formula()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn solution(solution: &Solution, verification: Option<&Verification>, tolerance: f64) -> String {
+pub fn solution(
+    solution: &Solution,
+    verification: Option<&Verification>,
+    tolerance: f64,
+) -> String {
     let _letters = solution.letters().in_force();
-    document(&report::solution(solution, verification, tolerance), usize::MAX)
+    document(
+        &report::solution(solution, verification, tolerance),
+        usize::MAX,
+    )
 }
 
-/// Every method in one table, and below it those that do not apply, in lines of at most `width` characters where words allow
-/// it. Formulas stand at the end of their rows where all of them fit there, and below the table where not.
+/// Every method in one table, and below it those that do not apply, in lines of at most `width`
+/// characters where words allow it. Formulas stand at the end of their rows where all of them fit
+/// there, and below the table where not.
 ///
 /// ```
 /// use lindstedt::{Oscillator, verify::comparison::compare};
@@ -90,7 +98,8 @@ pub fn impact(impact: &Impact, tolerance: f64) -> String {
     document(&report::impact(impact, tolerance), usize::MAX)
 }
 
-/// Every method on one impact in a table, in lines of at most `width` characters where words allow it.
+/// Every method on one impact in a table, in lines of at most `width` characters where words allow
+/// it.
 ///
 /// ```
 /// use lindstedt::impact::{Setup, compare};
@@ -116,7 +125,8 @@ pub fn friction(study: &FrictionStudy) -> String {
     document(&report::friction(study), usize::MAX)
 }
 
-/// The same swing against barriers of several materials, in lines of at most `width` characters where words allow it.
+/// The same swing against barriers of several materials, in lines of at most `width` characters
+/// where words allow it.
 ///
 /// ```
 /// use lindstedt::impact::{MaterialQuestion, study_materials};
@@ -147,7 +157,8 @@ pub fn audit(audit: &Audit, width: usize) -> String {
     document(&report::audit(audit), width)
 }
 
-/// A mechanism, its equations of motion and its groups, in lines of at most `width` characters where words allow it.
+/// A mechanism, its equations of motion and its groups, in lines of at most `width` characters
+/// where words allow it.
 ///
 /// ```
 /// use lindstedt::{audit::paper, mechanics::study};
@@ -160,7 +171,8 @@ pub fn mechanism(study: &MechanismStudy, width: usize) -> String {
     document(&report::mechanism(study), width)
 }
 
-/// A document as text, in lines of at most `width` characters where its blocks can be broken and words allow it.
+/// A document as text, in lines of at most `width` characters where its blocks can be broken and
+/// words allow it.
 ///
 /// ```
 /// use lindstedt::{Options, Oscillator, solve};
@@ -178,7 +190,12 @@ pub fn document(document: &Document, width: usize) -> String {
     };
     let sections = document.sections.iter();
     let sections: Vec<String> = sections
-        .map(|blocks| blocks.iter().map(|block| page.block(block, blocks)).collect())
+        .map(|blocks| {
+            blocks
+                .iter()
+                .map(|block| page.block(block, blocks))
+                .collect()
+        })
         .collect();
     sections.join("\n")
 }
@@ -198,7 +215,9 @@ impl Page {
             Block::QuestionAsTyped(equation) => format!("{equation}\n"),
             Block::Title { words, amplitude } => format!("{words}, {amplitude}\n"),
             Block::Heading(words) => format!("{words}\n"),
-            Block::Note(words) | Block::Remark(words) | Block::Detail(words) => format!("  {words}\n"),
+            Block::Note(words) | Block::Remark(words) | Block::Detail(words) => {
+                format!("  {words}\n")
+            }
             Block::Sentence(words) => comparison::wrapped(words, self.width, "  ", "  ") + "\n",
             Block::Table { head, rows } => table::table(head, rows),
             Block::Law { left, right } => format!("  {:<8}= {right}\n", left.to_string()),
@@ -214,9 +233,17 @@ impl Page {
             }
             Block::Motion(solution) => motion(solution),
             Block::Definition(definition) => {
-                format!("  {} = {}\n", definition.symbol, definition.meaning_in_words())
+                format!(
+                    "  {} = {}\n",
+                    definition.symbol,
+                    definition.meaning_in_words()
+                )
             }
-            Block::Value { name, value, source } => {
+            Block::Value {
+                name,
+                value,
+                source,
+            } => {
                 let width = section
                     .iter()
                     .filter_map(name_of_value)
@@ -224,7 +251,11 @@ impl Page {
                     .max();
                 let source = source.map_or(String::new(), |source| format!("   ({source})"));
                 let width = width.unwrap_or(0);
-                format!("  {:<width$} = {}{source}\n", name.written(), decimal(*value))
+                format!(
+                    "  {:<width$} = {}{source}\n",
+                    name.written(),
+                    decimal(*value)
+                )
             }
             Block::Judged {
                 verification,
@@ -237,7 +268,9 @@ impl Page {
                 at,
                 frequency,
             } => comparison::truth(equation, at, frequency),
-            Block::Methods { rows, tolerance, .. } => comparison::methods(rows, *tolerance, self),
+            Block::Methods {
+                rows, tolerance, ..
+            } => comparison::methods(rows, *tolerance, self),
             Block::Entries { heading, entries } => comparison::entries(heading, entries, self),
             Block::Facts(facts) => facts_in_lines(facts),
             Block::Refused(refused) => comparison::refused(refused, self),
@@ -263,7 +296,11 @@ impl Page {
                 shapes,
             } => impact::quantities(columns, rows, deviations, shapes),
             Block::ContactLaws { rows } => impact::contact_laws(rows),
-            Block::ImpactMethods { rows, truth, tolerance } => impact::methods(rows, *truth, *tolerance, self.width),
+            Block::ImpactMethods {
+                rows,
+                truth,
+                tolerance,
+            } => impact::methods(rows, *truth, *tolerance, self.width),
             Block::SiValue {
                 name,
                 formula,
@@ -272,8 +309,15 @@ impl Page {
                 words,
             } => impact::si_value(name, *formula, *value, unit, words),
             Block::SiQuantities { columns, rows } => impact::si_quantities(columns, rows),
-            Block::Verdicts { verdicts, tolerance } => impact::verdicts(verdicts, *tolerance),
-            Block::Shortcoming { reading, errors, cause } => impact::shortcoming(*reading, errors, cause),
+            Block::Verdicts {
+                verdicts,
+                tolerance,
+            } => impact::verdicts(verdicts, *tolerance),
+            Block::Shortcoming {
+                reading,
+                errors,
+                cause,
+            } => impact::shortcoming(*reading, errors, cause),
         }
     }
 }
@@ -287,7 +331,11 @@ fn name_of_value(block: &Block) -> Option<Symbol> {
 
 /// Quantities and their numbers, one a line.
 fn facts_in_lines(facts: &[(&str, String)]) -> String {
-    let width = facts.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+    let width = facts
+        .iter()
+        .map(|(name, _)| name.chars().count())
+        .max()
+        .unwrap_or(0);
     let line = |(name, value): &(&str, String)| format!("  {name:<width$}  {value}\n");
     facts.iter().map(line).collect()
 }
@@ -317,7 +365,11 @@ fn motion(solution: &Solution) -> String {
     );
     let first = format!("  {}(t) = ", solution.coordinate());
     let mut lines = terms::lines(&waves, &first, "         ");
-    lines.push(format!("         {} = {}\n", solution.phase(), angle(solution)));
+    lines.push(format!(
+        "         {} = {}\n",
+        solution.phase(),
+        angle(solution)
+    ));
     lines.join("\n")
 }
 
@@ -348,12 +400,18 @@ fn followed(followed: &Followed) -> Vec<(&'static str, String)> {
     )];
     if let Some(error) = followed.amplitude_error {
         let error = size_in_percent(error);
-        lines.push(("error of amplitude", format!("{error} of that at the start")));
+        lines.push((
+            "error of amplitude",
+            format!("{error} of that at the start"),
+        ));
     }
     let time = |time: Option<f64>| time.map_or("not seen".to_owned(), decimal);
     if followed.tenth.or(followed.true_tenth).is_some() {
         let [formula, truth] = [followed.tenth, followed.true_tenth].map(time);
-        lines.push(("a tenth is left at", format!("t = {formula}; true t = {truth}")));
+        lines.push((
+            "a tenth is left at",
+            format!("t = {formula}; true t = {truth}"),
+        ));
         if let Some(action) = followed.tenth_by_action {
             lines.push(("by the action at", format!("t = {}", decimal(action))));
         }
@@ -362,10 +420,17 @@ fn followed(followed: &Followed) -> Vec<(&'static str, String)> {
 }
 
 /// The verdict, number by number.
-fn judged(verification: &Verification, series_of_omega: Option<f64>, hbar: Symbol, tolerance: f64) -> String {
+fn judged(
+    verification: &Verification,
+    series_of_omega: Option<f64>,
+    hbar: Symbol,
+    tolerance: f64,
+) -> String {
     let (heading, facts) = judgement(verification, series_of_omega, hbar, tolerance);
     let line = |(name, value): (String, String)| format!("  {name:<20}{value}\n");
-    facts.into_iter().fold(heading + "\n", |text, fact| text + &line(fact))
+    facts
+        .into_iter()
+        .fold(heading + "\n", |text, fact| text + &line(fact))
 }
 
 /// What was judged where, and each number with its name.
@@ -394,8 +459,14 @@ pub(super) fn judgement(
             .map(ToString::to_string)
             .unwrap_or_default()
     };
-    line(FREQUENCY.written(), verification.frequency.map_or_else(reason, decimal));
-    line(&format!("true {FREQUENCY}"), decimal(verification.true_frequency));
+    line(
+        FREQUENCY.written(),
+        verification.frequency.map_or_else(reason, decimal),
+    );
+    line(
+        &format!("true {FREQUENCY}"),
+        decimal(verification.true_frequency),
+    );
     if let Some(error) = verification.relative_error {
         line("relative error", percent(error));
     }
@@ -404,7 +475,9 @@ pub(super) fn judgement(
             "the root of {FREQUENCY}^2; the series of {FREQUENCY} itself errs by {}",
             percent(other)
         ),
-        Some(_) => format!("the root of {FREQUENCY}^2; the series of {FREQUENCY} itself has no value"),
+        Some(_) => {
+            format!("the root of {FREQUENCY}^2; the series of {FREQUENCY} itself has no value")
+        }
         None => of_frequency(verification.judged_on),
     };
     line("judged on", judged_on);
@@ -425,16 +498,22 @@ pub(super) fn judgement(
         line(name, value);
     }
     if let Some(residual) = verification.residual {
-        line("residual", format!("{} of the force (rms)", size_in_percent(residual)));
+        line(
+            "residual",
+            format!("{} of the force (rms)", size_in_percent(residual)),
+        );
     }
     // An error that is large now does not vanish in rounding when the small parameter is halved.
-    let large = verification.relative_error.is_some_and(|error| error.abs() > LARGE);
+    let large = verification
+        .relative_error
+        .is_some_and(|error| error.abs() > LARGE);
     let unknown = match (verification.over_several_wells, large) {
         (true, _) => "not measured: motions over both wells do not become small",
         (false, true) => "not measured",
         (false, false) => "hidden by rounding",
     };
-    let slope = |slope: Option<f64>| slope.map_or(unknown.to_owned(), |slope| format!("{slope:.2}"));
+    let slope =
+        |slope: Option<f64>| slope.map_or(unknown.to_owned(), |slope| format!("{slope:.2}"));
     let slope = match &verification.followed {
         None => slope(verification.slope),
         Some(followed) => match (verification.slope, followed.amplitude_slope) {
@@ -448,7 +527,11 @@ pub(super) fn judgement(
     };
     line("slope of the error", slope);
     for (name, value) in &verification.chosen {
-        let how = if *name == hbar { " (least squared residual)" } else { "" };
+        let how = if *name == hbar {
+            " (least squared residual)"
+        } else {
+            ""
+        };
         line(name.written(), format!("{}{how}", significant(*value, 6)));
     }
     for range in &verification.ranges {

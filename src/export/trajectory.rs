@@ -1,4 +1,5 @@
-//! A motion in numbers as comma-separated values and as a picture; text by [`text::document`](super::text::document).
+//! A motion in numbers as comma-separated values and as a picture; text by
+//! [`text::document`](super::text::document).
 
 use std::fmt::Write as _;
 
@@ -27,7 +28,8 @@ fn times(report: &TrajectoryReport) -> Vec<f64> {
     }
 }
 
-/// Time, coordinates and velocities, 2001 times or those asked for; on a section those of its states.
+/// Time, coordinates and velocities, 2001 times or those asked for; on a section those of its
+/// states.
 ///
 /// ```
 /// use lindstedt::Oscillator;
@@ -43,11 +45,21 @@ fn times(report: &TrajectoryReport) -> Vec<f64> {
 /// ```
 pub fn csv(report: &TrajectoryReport) -> String {
     let motion = report.motion;
-    let names: Vec<&str> = motion.course.rates.states.iter().map(|name| name.name()).collect();
+    let names: Vec<&str> = motion
+        .course
+        .rates
+        .states
+        .iter()
+        .map(|name| name.name())
+        .collect();
     let mut text = format!("t,{}\n", names.join(","));
     let on_section = motion.course.section.is_some() && report.samples.is_empty();
     let times = match on_section {
-        true => motion.crossings().iter().map(|crossing| crossing.time).collect(),
+        true => motion
+            .crossings()
+            .iter()
+            .map(|crossing| crossing.time)
+            .collect(),
         false => times(report),
     };
     for time in times {
@@ -102,7 +114,12 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
         .filter_map(|time| Some((time, motion.at(time)?)))
         .collect();
     let in_time: Vec<Vec<(f64, f64)>> = (0..count)
-        .map(|index| states.iter().map(|(time, state)| (*time, state[index])).collect())
+        .map(|index| {
+            states
+                .iter()
+                .map(|(time, state)| (*time, state[index]))
+                .collect()
+        })
         .collect();
     let planes: Vec<Vec<(f64, f64)>> = (0..count)
         .map(|index| {
@@ -130,7 +147,12 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
             }],
             ..Panel::default()
         };
-        panels.push(panel("Motion", "time t", name[0].as_str(), in_time.as_slice()));
+        panels.push(panel(
+            "Motion",
+            "time t",
+            name[0].as_str(),
+            in_time.as_slice(),
+        ));
         panels.push(panel(
             "Phase plane",
             name[0].as_str(),
@@ -138,7 +160,11 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
             plane.as_slice(),
         ));
     }
-    let equations: Vec<String> = course.equations.iter().map(|left| format!("{left} = 0")).collect();
+    let equations: Vec<String> = course
+        .equations
+        .iter()
+        .map(|left| format!("{left} = 0"))
+        .collect();
     figure(&panels, &format!("{}.", equations.join(", ")))
 }
 
@@ -152,7 +178,9 @@ fn on_section(motion: &Trajectory, section: &Section) -> Result<String, FigureEr
         .iter()
         .map(|name| [name.to_string(), format!("{name}′")])
         .collect();
-    let point = |index: usize| move |crossing: &Crossing| (crossing.state[index], crossing.state[count + index]);
+    let point = |index: usize| {
+        move |crossing: &Crossing| (crossing.state[index], crossing.state[count + index])
+    };
     let points: Vec<Vec<(f64, f64)>> = (0..count)
         .map(|index| motion.crossings().iter().map(point(index)).collect())
         .collect();
@@ -161,7 +189,11 @@ fn on_section(motion: &Trajectory, section: &Section) -> Result<String, FigureEr
         .zip(&points)
         .map(|(name, points)| dots("Poincaré section", [&name[0], &name[1]], points))
         .collect();
-    let equations: Vec<String> = course.equations.iter().map(|left| format!("{left} = 0")).collect();
+    let equations: Vec<String> = course
+        .equations
+        .iter()
+        .map(|left| format!("{left} = 0"))
+        .collect();
     figure(
         &panels,
         &format!("{}. {}", equations.join(", "), section_in_words(section)),
@@ -183,7 +215,8 @@ fn dots<'a>(title: &'a str, labels: [&'a str; 2], points: &'a [(f64, f64)]) -> P
     }
 }
 
-/// Many motions: a line for every state on the section, or without a section one for every motion with its extremes.
+/// Many motions: a line for every state on the section, or without a section one for every motion
+/// with its extremes.
 pub fn sweep_csv(sweep: &MotionSweep) -> String {
     let course = sweep.course;
     let varied: Vec<&str> = sweep.names.iter().map(|name| name.name()).collect();
@@ -198,7 +231,11 @@ pub fn sweep_csv(sweep: &MotionSweep) -> String {
             let _ = writeln!(text, "{},t,{}", varied.join(","), states.join(","));
             for motion in sweep.motions {
                 for crossing in &motion.crossings {
-                    let line = motion.values.iter().chain([&crossing.time]).chain(&crossing.state);
+                    let line = motion
+                        .values
+                        .iter()
+                        .chain([&crossing.time])
+                        .chain(&crossing.state);
                     let _ = writeln!(text, "{}", join(&mut line.copied()));
                 }
             }
@@ -226,7 +263,8 @@ pub fn sweep_csv(sweep: &MotionSweep) -> String {
     text
 }
 
-/// Over what is varied: every state on the section, a bifurcation diagram; without a section the least and the greatest values.
+/// Over what is varied: every state on the section, a bifurcation diagram; without a section the
+/// least and the greatest values.
 ///
 /// # Errors
 /// As [`figure`].
@@ -244,7 +282,10 @@ pub fn sweep_picture(sweep: &MotionSweep) -> Result<String, FigureError> {
                         .iter()
                         .map(|crossing| (value, crossing.state[index]))
                         .collect(),
-                    false => motion.extremes[index].iter().map(|extreme| (value, *extreme)).collect(),
+                    false => motion.extremes[index]
+                        .iter()
+                        .map(|extreme| (value, *extreme))
+                        .collect(),
                 }
             };
             sweep.motions.iter().flat_map(of).collect()
@@ -260,17 +301,29 @@ pub fn sweep_picture(sweep: &MotionSweep) -> Result<String, FigureError> {
         .zip(&points)
         .map(|(name, points)| dots(title, [varied, name], points))
         .collect();
-    let equations: Vec<String> = course.equations.iter().map(|left| format!("{left} = 0")).collect();
+    let equations: Vec<String> = course
+        .equations
+        .iter()
+        .map(|left| format!("{left} = 0"))
+        .collect();
     let section = course
         .section
         .as_ref()
         .map(|section| format!(". {}", section_in_words(section)));
     let after = match course.after > 0.0 {
-        true => format!(", from t = {} to {}", decimal(course.after), decimal(course.duration)),
+        true => format!(
+            ", from t = {} to {}",
+            decimal(course.after),
+            decimal(course.duration)
+        ),
         false => format!(", to t = {}", decimal(course.duration)),
     };
     figure(
         &panels,
-        &format!("{}{}{after}", equations.join(", "), section.unwrap_or_default()),
+        &format!(
+            "{}{}{after}",
+            equations.join(", "),
+            section.unwrap_or_default()
+        ),
     )
 }

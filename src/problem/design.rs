@@ -1,10 +1,13 @@
-//! The pendulum and its bodies in SI units: `[design]`, or by their own names `[pendulum]`, `[sphere]` and `[barrier]`.
+//! The pendulum and its bodies in SI units: `[design]`, or by their own names `[pendulum]`,
+//! `[sphere]` and `[barrier]`.
 //!
-//! In: a [`Problem`]. Out: its [`Design`], from which gamma follows by equation (8), and its [`Units`]. A quantity has two
-//! keys, one of which may be given. The modulus is that of the barrier alone, as in the paper, unless `[barrier] poisson` is
-//! given: then that of a rigid sphere on it, or with `[sphere] modulus` and `[sphere] poisson` that of both bodies.
+//! In: a [`Problem`]. Out: its [`Design`], from which gamma follows by equation (8), and its
+//! [`Units`]. A quantity has two keys, one of which may be given. The modulus is that of the
+//! barrier alone, as in the paper, unless `[barrier] poisson` is given: then that of a rigid sphere
+//! on it, or with `[sphere] modulus` and `[sphere] poisson` that of both bodies.
 //!
-//! Where gamma is given it wins: the moduli have no say, and there are units where mass, length and gravity are all given.
+//! Where gamma is given it wins: the moduli have no say, and there are units where mass, length and
+//! gravity are all given.
 
 use thiserror::Error;
 
@@ -87,7 +90,8 @@ pub enum DesignError {
     },
 }
 
-/// The keys of units, by their own names: those of the pendulum, the radius, those of the moduli, those of yield limits.
+/// The keys of units, by their own names: those of the pendulum, the radius, those of the moduli,
+/// those of yield limits.
 const PENDULUM: [&str; 3] = ["[pendulum] mass", "[pendulum] length", "[pendulum] gravity"];
 const RADIUS: [&str; 1] = ["[sphere] radius"];
 const MODULI: [&str; 4] = [
@@ -102,14 +106,27 @@ impl Problem {
     /// The quantities that gamma follows from.
     ///
     /// # Errors
-    /// A quantity given twice, or one by its own name that is not positive; half an equivalent modulus.
+    /// A quantity given twice, or one by its own name that is not positive; half an equivalent
+    /// modulus.
     pub(super) fn design(&self) -> Result<Design, DesignError> {
         let usual = Design::from(self.design);
         let (pendulum, sphere) = (&self.pendulum, &self.sphere);
         Ok(Design {
-            mass: self.one_of(["[pendulum] mass", "[design] mass"], pendulum.mass, usual.mass)?,
-            radius: self.one_of(["[sphere] radius", "[design] radius"], sphere.radius, usual.radius)?,
-            length: self.one_of(["[pendulum] length", "[design] length"], pendulum.length, usual.length)?,
+            mass: self.one_of(
+                ["[pendulum] mass", "[design] mass"],
+                pendulum.mass,
+                usual.mass,
+            )?,
+            radius: self.one_of(
+                ["[sphere] radius", "[design] radius"],
+                sphere.radius,
+                usual.radius,
+            )?,
+            length: self.one_of(
+                ["[pendulum] length", "[design] length"],
+                pendulum.length,
+                usual.length,
+            )?,
             modulus: self.modulus()?.value(),
             gravity: self.one_of(
                 ["[pendulum] gravity", "[design] gravity"],
@@ -120,7 +137,12 @@ impl Problem {
     }
 
     /// A quantity by its own key, or by that of `[design]`.
-    fn one_of(&self, keys: [&'static str; 2], own: Option<f64>, usual: f64) -> Result<f64, DesignError> {
+    fn one_of(
+        &self,
+        keys: [&'static str; 2],
+        own: Option<f64>,
+        usual: f64,
+    ) -> Result<f64, DesignError> {
         let [key, other] = keys;
         match own {
             Some(_) if self.gives(other) => Err(DesignError::Twice { key, other }),
@@ -137,7 +159,8 @@ impl Problem {
         self.modulus_of([key, "[barrier] poisson"], alone, self.barrier.poisson)
     }
 
-    /// The modulus of the contact of the sphere with a barrier, whose modulus and Poisson's ratio stand under these keys.
+    /// The modulus of the contact of the sphere with a barrier, whose modulus and Poisson's ratio
+    /// stand under these keys.
     pub(super) fn modulus_of(
         &self,
         [modulus_key, poisson_key]: [&'static str; 2],
@@ -145,7 +168,9 @@ impl Problem {
         poisson_of_barrier: Option<f64>,
     ) -> Result<Modulus, DesignError> {
         let poisson = |key, value: Option<f64>| match value {
-            Some(value) if !(value > -1.0 && value <= 0.5) => Err(DesignError::Poisson { key, value }),
+            Some(value) if !(value > -1.0 && value <= 0.5) => {
+                Err(DesignError::Poisson { key, value })
+            }
             other => Ok(other),
         };
         let of_barrier = poisson(poisson_key, poisson_of_barrier)?;
@@ -171,12 +196,16 @@ impl Problem {
         }
     }
 
-    /// The units of an impact, where they are known: of the pendulum with the contact of Hertz, by the design where gamma
-    /// follows from it.
+    /// The units of an impact, where they are known: of the pendulum with the contact of Hertz, by
+    /// the design where gamma follows from it.
     ///
     /// # Errors
     /// A key by its own name that would change nothing.
-    pub(super) fn units(&self, is_hertz: bool, gamma_follows: bool) -> Result<Option<Units>, DesignError> {
+    pub(super) fn units(
+        &self,
+        is_hertz: bool,
+        gamma_follows: bool,
+    ) -> Result<Option<Units>, DesignError> {
         let design = self.design()?;
         let first = |keys: &[&'static str]| keys.iter().copied().find(|key| self.gives(key));
         let silent = |groups: &[&[&'static str]]| first(&groups.concat());
@@ -210,7 +239,8 @@ impl Problem {
         if let Some(key) = first(&MODULI) {
             return Err(DesignError::BesideGamma { key });
         }
-        let given = |name: &str, own: &str| self.gives(own) || self.gives(&format!("[design] {name}"));
+        let given =
+            |name: &str, own: &str| self.gives(own) || self.gives(&format!("[design] {name}"));
         let needed = ["mass", "length", "gravity"].into_iter().zip(PENDULUM);
         let missing: Vec<&str> = needed
             .filter(|(name, own)| !given(name, own))
@@ -244,8 +274,9 @@ impl Problem {
 }
 
 impl Problem {
-    /// The units of a motion, by the rule of [`Problem::units`]: by the design where gamma follows from it, or something that damps
-    /// is given in SI units; otherwise where mass, length and gravity are given. What says nothing is no mistake here.
+    /// The units of a motion, by the rule of [`Problem::units`]: by the design where gamma follows
+    /// from it, or something that damps is given in SI units; otherwise where mass, length and
+    /// gravity are given. What says nothing is no mistake here.
     pub(super) fn simulation_units(&self, design: &Design) -> Option<Units> {
         let given = |name: &str| {
             let keys = [format!("[pendulum] {name}"), format!("[design] {name}")];
@@ -284,9 +315,9 @@ mod tests {
 
     #[test]
     fn either_name_says_the_same() {
-        let old = "[design]\nmass = 0.02\nradius = 0.01\nlength = 0.25\nmodulus = 2e9\ngravity = 1.6";
-        let new =
-            "[pendulum]\nmass = 0.02\nlength = 0.25\ngravity = 1.6\n[sphere]\nradius = 0.01\n[barrier]\nmodulus = 2e9";
+        let old =
+            "[design]\nmass = 0.02\nradius = 0.01\nlength = 0.25\nmodulus = 2e9\ngravity = 1.6";
+        let new = "[pendulum]\nmass = 0.02\nlength = 0.25\ngravity = 1.6\n[sphere]\nradius = 0.01\n[barrier]\nmodulus = 2e9";
         assert_eq!(design(old), design(new));
         assert_eq!(design(""), Ok(Design::default()));
     }
@@ -296,8 +327,14 @@ mod tests {
         let rigid = design("[barrier]\nmodulus = 2e9\npoisson = 0.5").unwrap();
         assert!((rigid.modulus / (2e9 / 0.75) - 1.0).abs() < 1e-15);
         for (text, words) in [
-            ("[sphere]\nmodulus = 2e11", ["[sphere] modulus", "[sphere] poisson"]),
-            ("[sphere]\npoisson = 0.3", ["[sphere] poisson", "[sphere] modulus"]),
+            (
+                "[sphere]\nmodulus = 2e11",
+                ["[sphere] modulus", "[sphere] poisson"],
+            ),
+            (
+                "[sphere]\npoisson = 0.3",
+                ["[sphere] poisson", "[sphere] modulus"],
+            ),
             (
                 "[sphere]\nmodulus = 2e11\npoisson = 0.3",
                 ["[sphere] modulus", "[barrier] poisson"],
@@ -320,7 +357,10 @@ mod tests {
         assert_eq!(units("[design]\nmass = 0.02"), Ok(None));
         let all = "[design]\nmass = 0.02\n[pendulum]\nlength = 0.25\ngravity = 1.6\n";
         let found = units(all).unwrap().unwrap();
-        assert_eq!((found.radius, found.modulus, found.length), (None, None, 0.25));
+        assert_eq!(
+            (found.radius, found.modulus, found.length),
+            (None, None, 0.25)
+        );
         let found = units(&format!("{all}[sphere]\nradius = 0.01\nyield = 1e9"))
             .unwrap()
             .unwrap();

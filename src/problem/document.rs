@@ -1,4 +1,5 @@
-//! The document: what a problem file may hold, section by section, and the defaults of what it leaves out.
+//! The document: what a problem file may hold, section by section, and the defaults of what it
+//! leaves out.
 
 use crate::symbol::Symbol;
 use std::collections::BTreeMap;
@@ -60,7 +61,8 @@ pub struct Problem {
     pub limits: LimitsSection,
     /// How it searches.
     pub genetic: GeneticSection,
-    /// The keys that are given, as [`KEYS`](super::KEYS) names them: what is absent has its default.
+    /// The keys that are given, as [`KEYS`](super::KEYS) names them: what is absent has its
+    /// default.
     #[serde(skip)]
     pub given: Vec<String>,
     /// The values that win over a key that says the same.
@@ -73,7 +75,10 @@ pub struct Problem {
 
 /// A whole number, or the degrees of an approximant: `order = 4`, `order = [2, 1]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(untagged, expecting = "expected a whole number, or two: [numerator, denominator]")]
+#[serde(
+    untagged,
+    expecting = "expected a whole number, or two: [numerator, denominator]"
+)]
 pub enum Order {
     /// The highest power kept, or what the method counts.
     Power(u32),
@@ -113,7 +118,8 @@ pub struct Pendulum {
     pub amplitude: f64,
     /// x_c, rad, or `[left, right]`, or `false` for none.
     pub barrier: Barrier,
-    /// On which side of its place a single barrier is: `right`, or `left` with the release at x = amplitude.
+    /// On which side of its place a single barrier is: `right`, or `left` with the release at x =
+    /// amplitude.
     pub side: Option<BarrierSide>,
     /// x(0), rad, where it is not -amplitude.
     pub start: Option<f64>,
@@ -182,7 +188,8 @@ pub struct MaterialSection {
     pub damping: Option<f64>,
 }
 
-/// `[limits]`: what a search for the best design may vary between, in SI units, and what it must keep.
+/// `[limits]`: what a search for the best design may vary between, in SI units, and what it must
+/// keep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct LimitsSection {
@@ -222,11 +229,14 @@ impl TryFrom<Vec<f64>> for Range {
 
     fn try_from(limits: Vec<f64>) -> Result<Self, &'static str> {
         let limits = <[f64; 2]>::try_from(limits);
-        limits.map(Self).map_err(|_| "expected two limits: [lower, upper]")
+        limits
+            .map(Self)
+            .map_err(|_| "expected two limits: [lower, upper]")
     }
 }
 
-/// `[genetic]`: how a search for the best design goes; the defaults are those of the paper's Table 3 where they can hold together.
+/// `[genetic]`: how a search for the best design goes; the defaults are those of the paper's Table
+/// 3 where they can hold together.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct GeneticSection {
@@ -310,7 +320,10 @@ impl TryFrom<bool> for NoBarrier {
 
 /// One barrier, on the right unless `side` says otherwise, or one on either side.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(untagged, expecting = "expected a number, or two: [left, right], or false for none")]
+#[serde(
+    untagged,
+    expecting = "expected a number, or two: [left, right], or false for none"
+)]
 pub enum Barrier {
     /// `false`: none at all.
     Absent(NoBarrier),
@@ -320,7 +333,8 @@ pub enum Barrier {
     Both([f64; 2]),
 }
 
-/// `[primary]`, SI units: the main mass on spring and dashpot that carries the pendulum and its barriers.
+/// `[primary]`, SI units: the main mass on spring and dashpot that carries the pendulum and its
+/// barriers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PrimarySection {
@@ -372,14 +386,16 @@ pub struct Contact {
     pub mu_over_gamma: Option<f64>,
     /// The coefficient of restitution, in place of mu.
     pub restitution: Option<f64>,
-    /// The speed at which that holds, in m/s where the file gives any number in SI units (a mass, a length, a modulus, `lambda`,
-    /// `viscous` ..), otherwise in units of L omega; without it that of the first touch without damping.
+    /// The speed at which that holds, in m/s where the file gives any number in SI units (a mass, a
+    /// length, a modulus, `lambda`, `viscous` ..), otherwise in units of L omega; without it that
+    /// of the first touch without damping.
     pub at_speed: Option<f64>,
     /// c of F = (k + c d') d^(3/2), N s/m^(5/2), in place of mu.
     pub damping: Option<f64>,
     /// For an impact, the law of the contact in the derived phases; `all` for a table of every law.
     pub law: Option<String>,
-    /// The rule by which a line replaces the elastic force; `all` for a table of every law of the contact.
+    /// The rule by which a line replaces the elastic force; `all` for a table of every law of the
+    /// contact.
     pub linearisation: Option<String>,
 }
 
@@ -447,17 +463,31 @@ impl Problem {
 }
 
 impl Contact {
-    /// The damping of the contact in the form in which it is given, the first where there are several.
+    /// The damping of the contact in the form in which it is given, the first where there are
+    /// several.
     pub fn given_damping(&self) -> Option<ContactDamping> {
-        let forms = [self.mu, self.mu_over_gamma, self.lambda, self.restitution, self.damping];
+        let forms = [
+            self.mu,
+            self.mu_over_gamma,
+            self.lambda,
+            self.restitution,
+            self.damping,
+        ];
         dampings(forms).first().copied()
     }
 }
 
 impl MaterialSection {
-    /// The damping of its contact in every form in which it is given: one, or none, where it makes sense.
+    /// The damping of its contact in every form in which it is given: one, or none, where it makes
+    /// sense.
     pub fn given_dampings(&self) -> Vec<ContactDamping> {
-        dampings([self.mu, self.mu_over_gamma, self.lambda, self.restitution, self.damping])
+        dampings([
+            self.mu,
+            self.mu_over_gamma,
+            self.lambda,
+            self.restitution,
+            self.damping,
+        ])
     }
 }
 

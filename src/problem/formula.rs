@@ -1,4 +1,5 @@
-//! What `derive`, `compare` and `response` read of a problem file: an equation, and how and where to solve it.
+//! What `derive`, `compare` and `response` read of a problem file: an equation, and how and where
+//! to solve it.
 
 use thiserror::Error;
 
@@ -7,7 +8,8 @@ use crate::expr::parse_expression;
 use crate::symbol::Symbol;
 use crate::values::Values;
 
-/// An equation of motion and the choices that a file makes for it, as they are written; what it leaves out is `None`.
+/// An equation of motion and the choices that a file makes for it, as they are written; what it
+/// leaves out is `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Formula<'a> {
     /// The equation.
@@ -108,8 +110,8 @@ impl Problem {
         Ok(values)
     }
 
-    /// Those of [`Problem::exact_values`] that the equation of motion takes: not of a letter that stands in the energies of the file and
-    /// cancels, as a mass does.
+    /// Those of [`Problem::exact_values`] that the equation of motion takes: not of a letter that
+    /// stands in the energies of the file and cancels, as a mass does.
     ///
     /// # Errors
     /// As there.
@@ -125,7 +127,8 @@ impl Problem {
         self.values_with(&[])
     }
 
-    /// As [`Problem::values_of_motion`], and those of `needed` too, such as a mass without which there is no energy in numbers.
+    /// As [`Problem::values_of_motion`], and those of `needed` too, such as a mass without which
+    /// there is no energy in numbers.
     ///
     /// # Errors
     /// As there.
@@ -145,7 +148,10 @@ mod tests {
     fn values_are_exact() {
         let problem: Problem = "[values]\nA = 0.323\nB = \"pi/3\"\nC = 2".parse().unwrap();
         let values = problem.exact_values().unwrap();
-        let texts: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        let texts: Vec<String> = values
+            .iter()
+            .map(|(name, value)| format!("{name} = {value}"))
+            .collect();
         assert_eq!(texts, ["A = 323/1000", "B = pi/3", "C = 2"]);
         assert!(
             "[values]\nA = \"k\""

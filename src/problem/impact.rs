@@ -7,7 +7,8 @@ use crate::expr::{Expr, ParseError, parse_expression};
 use crate::impact::contact::{ContactLaw, UnknownContactLaw};
 use crate::impact::hertz::{Design, NotPositive};
 use crate::impact::{
-    CollisionError, ContactDamping, ContactLoss, ContactScales, DampingError, Rule, Setup, Side, SpeedUnit, UnknownRule,
+    CollisionError, ContactDamping, ContactLoss, ContactScales, DampingError, Rule, Setup, Side,
+    SpeedUnit, UnknownRule,
 };
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::solution::{AmplitudeConvention, Method};
@@ -40,16 +41,22 @@ pub enum ImpactFileError {
     #[error("[contact] has both {0} and {1}: either says what the contact loses, give one of them")]
     TwoLosses(&'static str, &'static str),
     /// A speed at which nothing is stated.
-    #[error("[contact] at_speed changes nothing without restitution: give that too, or leave it out")]
+    #[error(
+        "[contact] at_speed changes nothing without restitution: give that too, or leave it out"
+    )]
     SpeedAlone,
     /// A damping that makes no number of equation (7).
     #[error(transparent)]
     DampingBeyond(#[from] DampingError),
     /// A restitution that is none.
-    #[error("[contact] restitution must lie above 0 and be at most 1, not {0}: 1 is a contact without loss")]
+    #[error(
+        "[contact] restitution must lie above 0 and be at most 1, not {0}: 1 is a contact without loss"
+    )]
     Restitution(f64),
     /// A damping that is none.
-    #[error("[contact] {key} must be a number and not negative, not {value}: 0 is a contact without loss")]
+    #[error(
+        "[contact] {key} must be a number and not negative, not {value}: 0 is a contact without loss"
+    )]
     Damping {
         /// The key.
         key: &'static str,
@@ -98,7 +105,9 @@ pub enum ImpactFileError {
     #[error("unknown amplitude `{0}`: choose initial or first-harmonic")]
     Convention(String),
     /// An equilibrium that is none.
-    #[error("about = \"{text}\": expected \"{coordinate} = VALUE\", an equilibrium of the coordinate {coordinate}")]
+    #[error(
+        "about = \"{text}\": expected \"{coordinate} = VALUE\", an equilibrium of the coordinate {coordinate}"
+    )]
     About {
         /// As written.
         text: String,
@@ -122,7 +131,9 @@ pub enum ImpactFileError {
     )]
     LeftBarrier,
     /// No barrier.
-    #[error("an impact needs a barrier: leave out `barrier = false`, or follow the free swing by `lindstedt simulate`")]
+    #[error(
+        "an impact needs a barrier: leave out `barrier = false`, or follow the free swing by `lindstedt simulate`"
+    )]
     NoBarrier,
     /// A number given twice.
     #[error("`{name}` in [values] and `{key}` say the same: give one of them")]
@@ -133,7 +144,9 @@ pub enum ImpactFileError {
         key: &'static str,
     },
     /// Two keys for the release.
-    #[error("`amplitude` says nothing beside `start`, where the swing is released: give one of them")]
+    #[error(
+        "`amplitude` says nothing beside `start`, where the swing is released: give one of them"
+    )]
     AmplitudeBesideStart,
     /// An equilibrium without an equation.
     #[error("`about` chooses an equilibrium of `equation`: the pendulum has one, leave it out")]
@@ -221,7 +234,9 @@ impl TryFrom<&Problem> for Setup {
         let is_hertz = swing.is_none() && force.is_none();
         let has_stiffness = |force: &Expr| force.contains(Symbol::new("gamma"));
         let gamma_follows = !gives_stiffness && force.as_ref().is_none_or(has_stiffness);
-        let units = problem.units(is_hertz, gamma_follows).map_err(ProblemError::from)?;
+        let units = problem
+            .units(is_hertz, gamma_follows)
+            .map_err(ProblemError::from)?;
         let is_all = |name: &Option<String>| name.as_deref() == Some(EVERY_LAW);
         Ok(Self {
             swing,
@@ -251,7 +266,8 @@ impl TryFrom<&Problem> for Setup {
     }
 }
 
-/// The numbers of an impact that stand among the values, by the letters of the printed equation, and the other values.
+/// The numbers of an impact that stand among the values, by the letters of the printed equation,
+/// and the other values.
 struct Numbers {
     amplitude: Option<f64>,
     barrier: Option<f64>,
@@ -264,7 +280,11 @@ impl Numbers {
     ///
     /// # Errors
     /// A number under both, and for an equation of its own one under neither.
-    fn of(problem: &Problem, swing: Option<&Oscillator>, has_force: bool) -> Result<Self, ImpactFileError> {
+    fn of(
+        problem: &Problem,
+        swing: Option<&Oscillator>,
+        has_force: bool,
+    ) -> Result<Self, ImpactFileError> {
         let parameters = swing.map_or(&[][..], |swing| &swing.parameters);
         let coordinate = swing.map_or("x", |swing| swing.coordinate.name());
         let letters = [
@@ -274,7 +294,10 @@ impl Numbers {
         ];
         let values = problem.values_of_motion()?;
         let own = letters.each_ref().map(|(name, ..)| Symbol::new(name));
-        let own: Vec<Symbol> = own.into_iter().filter(|name| !parameters.contains(name)).collect();
+        let own: Vec<Symbol> = own
+            .into_iter()
+            .filter(|name| !parameters.contains(name))
+            .collect();
         let (_, others) = values.split(&own);
         let mut found = [None; 3];
         for ((written, letter, key), found) in letters.iter().zip(&mut found) {
@@ -312,7 +335,8 @@ impl Numbers {
     }
 }
 
-/// The place of the barrier on this side; one on the other is never touched again, where it stands beyond the release.
+/// The place of the barrier on this side; one on the other is never touched again, where it stands
+/// beyond the release.
 fn barrier(barrier: Barrier, side: Side, release: f64) -> Result<f64, ImpactFileError> {
     match (barrier, side) {
         (Barrier::Absent(_), _) => Err(ImpactFileError::NoBarrier),
@@ -325,7 +349,9 @@ fn barrier(barrier: Barrier, side: Side, release: f64) -> Result<f64, ImpactFile
 
 /// The swing, about the equilibrium asked for.
 fn swing(problem: &Problem) -> Result<Option<Oscillator>, ImpactFileError> {
-    problem.check_derived_equation().map_err(ProblemError::from)?;
+    problem
+        .check_derived_equation()
+        .map_err(ProblemError::from)?;
     let Some(equation) = &problem.equation else {
         return match problem.about {
             None => Ok(None),
@@ -341,7 +367,12 @@ fn swing(problem: &Problem) -> Result<Option<Oscillator>, ImpactFileError> {
         .split_once('=')
         .filter(|(name, _)| name.trim() == coordinate.name());
     let place = place.and_then(|(_, place)| parse_expression(place).ok());
-    let known = |place: &Expr| place.symbols().iter().all(|name| swing.parameters.contains(name));
+    let known = |place: &Expr| {
+        place
+            .symbols()
+            .iter()
+            .all(|name| swing.parameters.contains(name))
+    };
     match place.filter(known) {
         Some(place) => Ok(Some(swing.about(place))),
         None => Err(ImpactFileError::About {
@@ -380,7 +411,9 @@ fn convention(problem: &Problem) -> Result<Option<AmplitudeConvention>, ImpactFi
         return Ok(None);
     };
     let unknown = || ImpactFileError::Convention(name.clone());
-    AmplitudeConvention::from_name(name).map(Some).ok_or_else(unknown)
+    AmplitudeConvention::from_name(name)
+        .map(Some)
+        .ok_or_else(unknown)
 }
 
 /// What stands for a table in place of the name of a law or a rule.
@@ -430,20 +463,31 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Impact
     if !of_restitution && (problem.equation.is_some() || contact.force.is_some()) {
         return Err(ImpactFileError::DampingOfItsOwn(key));
     }
-    let laws = [("law", &contact.law), ("linearisation", &contact.linearisation)];
+    let laws = [
+        ("law", &contact.law),
+        ("linearisation", &contact.linearisation),
+    ];
     if let Some((law, _)) = laws.into_iter().find(|(_, name)| name.is_some()) {
-        return Err(ImpactFileError::LawBesideLoss { key: law, loss: key });
+        return Err(ImpactFileError::LawBesideLoss {
+            key: law,
+            loss: key,
+        });
     }
     if of_restitution && contact.at_speed.is_none() {
         return Ok(Some(ContactLoss::Restitution(value)));
     }
     let Design {
-        mass, length, gravity, ..
+        mass,
+        length,
+        gravity,
+        ..
     } = problem.design().map_err(ProblemError::from)?;
     let needed: &[(&'static str, f64)] = match key {
         "lambda" => &[("length", length), ("gravity", gravity)],
         "damping" => &[("mass", mass), ("length", length), ("gravity", gravity)],
-        _ if problem.speed_unit(&[]) == SpeedUnit::MetresPerSecond => &[("length", length), ("gravity", gravity)],
+        _ if problem.speed_unit(&[]) == SpeedUnit::MetresPerSecond => {
+            &[("length", length), ("gravity", gravity)]
+        }
         _ => &[],
     };
     let none = |value: &f64| !(value.is_finite() && *value > 0.0);
@@ -455,14 +499,19 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Impact
         mass,
         length,
         gravity,
-        speed: contact
-            .at_speed
-            .map(|speed| problem.speed_unit(&[]).dimensionless(speed, length, gravity)),
+        speed: contact.at_speed.map(|speed| {
+            problem
+                .speed_unit(&[])
+                .dimensionless(speed, length, gravity)
+        }),
     };
     let Some(damping) = contact.given_damping() else {
         return Ok(None);
     };
-    match damping.in_form(ContactDamping::MuOverGamma(0.0), &scales)?.value() {
+    match damping
+        .in_form(ContactDamping::MuOverGamma(0.0), &scales)?
+        .value()
+    {
         ratio if ratio.is_finite() => Ok(Some(ContactLoss::Damping(ratio))),
         _ => Err(ImpactFileError::Damping { key, value }),
     }

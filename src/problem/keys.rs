@@ -1,4 +1,5 @@
-//! Which command reads which key of a problem file: a key that would change nothing is refused by name.
+//! Which command reads which key of a problem file: a key that would change nothing is refused by
+//! name.
 
 use std::fmt;
 
@@ -31,7 +32,10 @@ pub enum Reader {
     Response,
 }
 
-use Reader::{Compare, Derive, Impact, Lagrange, Materials, Optimize, Response, Simulate, Stability, Trajectory};
+use Reader::{
+    Compare, Derive, Impact, Lagrange, Materials, Optimize, Response, Simulate, Stability,
+    Trajectory,
+};
 
 impl fmt::Display for Reader {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -52,11 +56,14 @@ impl fmt::Display for Reader {
 /// Those that read an equation of motion, and with it a mechanism.
 const MECHANISM: [Reader; 6] = [Derive, Compare, Impact, Trajectory, Lagrange, Response];
 
-/// Every key, as messages name it, and the commands that read it, or refuse it with a reason of their own.
+/// Every key, as messages name it, and the commands that read it, or refuse it with a reason of
+/// their own.
 pub const KEYS: [(&str, &[Reader]); 95] = [
     (
         "equation",
-        &[Derive, Compare, Impact, Simulate, Trajectory, Stability, Response],
+        &[
+            Derive, Compare, Impact, Simulate, Trajectory, Stability, Response,
+        ],
     ),
     ("method", &[Derive, Impact, Response]),
     ("order", &[Derive, Impact, Stability, Response]),
@@ -67,7 +74,9 @@ pub const KEYS: [(&str, &[Reader]); 95] = [
     ("about", &[Derive, Compare, Impact]),
     (
         "[values]",
-        &[Derive, Compare, Impact, Lagrange, Trajectory, Stability, Response],
+        &[
+            Derive, Compare, Impact, Lagrange, Trajectory, Stability, Response,
+        ],
     ),
     ("[lagrangian] coordinates", &MECHANISM),
     ("[lagrangian] kinetic", &MECHANISM),
@@ -82,26 +91,53 @@ pub const KEYS: [(&str, &[Reader]); 95] = [
     ("[primary] speed", &[Simulate, Optimize]),
     ("[primary] force", &[Simulate]),
     ("[primary] frequency", &[Simulate]),
-    ("[pendulum] amplitude", &[Impact, Simulate, Materials, Optimize]),
-    ("[pendulum] barrier", &[Impact, Simulate, Materials, Optimize]),
+    (
+        "[pendulum] amplitude",
+        &[Impact, Simulate, Materials, Optimize],
+    ),
+    (
+        "[pendulum] barrier",
+        &[Impact, Simulate, Materials, Optimize],
+    ),
     ("[pendulum] side", &[Impact, Simulate]),
     ("[pendulum] start", &[Impact, Simulate, Materials, Optimize]),
     ("[pendulum] speed", &[Impact, Simulate, Materials, Optimize]),
     ("[pendulum] mass", &[Impact, Simulate, Materials, Optimize]),
-    ("[pendulum] length", &[Impact, Simulate, Materials, Optimize]),
-    ("[pendulum] gravity", &[Impact, Simulate, Materials, Optimize]),
+    (
+        "[pendulum] length",
+        &[Impact, Simulate, Materials, Optimize],
+    ),
+    (
+        "[pendulum] gravity",
+        &[Impact, Simulate, Materials, Optimize],
+    ),
     ("[contact] gamma", &[Impact, Simulate]),
     ("[contact] force", &[Impact]),
     ("[contact] mu", &[Impact, Simulate, Materials, Optimize]),
-    ("[contact] mu_over_gamma", &[Impact, Simulate, Materials, Optimize]),
+    (
+        "[contact] mu_over_gamma",
+        &[Impact, Simulate, Materials, Optimize],
+    ),
     ("[contact] lambda", &[Impact, Simulate, Materials, Optimize]),
-    ("[contact] restitution", &[Impact, Simulate, Materials, Optimize]),
-    ("[contact] at_speed", &[Impact, Simulate, Materials, Optimize]),
-    ("[contact] damping", &[Impact, Simulate, Materials, Optimize]),
+    (
+        "[contact] restitution",
+        &[Impact, Simulate, Materials, Optimize],
+    ),
+    (
+        "[contact] at_speed",
+        &[Impact, Simulate, Materials, Optimize],
+    ),
+    (
+        "[contact] damping",
+        &[Impact, Simulate, Materials, Optimize],
+    ),
     ("[contact] law", &[Impact]),
     ("[contact] linearisation", &[Impact]),
     ("[damping] zeta", &[Impact, Simulate, Materials, Optimize]),
-    ("[damping] viscous", &[Impact, Simulate, Materials, Optimize]),
+    (
+        "[damping] viscous",
+        &[Impact, Simulate, Materials, Optimize],
+    ),
     ("[damping] alpha", &[Impact, Simulate, Materials, Optimize]),
     ("[damping] torque", &[Impact, Simulate, Materials, Optimize]),
     ("[damping] friction", &[Simulate, Materials, Optimize]),
@@ -116,12 +152,24 @@ pub const KEYS: [(&str, &[Reader]); 95] = [
     ("[sphere] modulus", &[Impact, Simulate, Materials, Optimize]),
     ("[sphere] poisson", &[Impact, Simulate, Materials, Optimize]),
     ("[sphere] yield", &[Impact, Materials, Optimize]),
-    ("[barrier] modulus", &[Impact, Simulate, Materials, Optimize]),
+    (
+        "[barrier] modulus",
+        &[Impact, Simulate, Materials, Optimize],
+    ),
     ("[barrier] poisson", &[Impact, Simulate]),
     ("[barrier] yield", &[Impact, Optimize]),
-    ("[run] duration", &[Simulate, Materials, Trajectory, Optimize]),
-    ("[run] integrator_tolerance", &[Impact, Simulate, Materials, Optimize]),
-    ("[run] step_limit", &[Impact, Simulate, Materials, Trajectory, Optimize]),
+    (
+        "[run] duration",
+        &[Simulate, Materials, Trajectory, Optimize],
+    ),
+    (
+        "[run] integrator_tolerance",
+        &[Impact, Simulate, Materials, Optimize],
+    ),
+    (
+        "[run] step_limit",
+        &[Impact, Simulate, Materials, Trajectory, Optimize],
+    ),
     ("[[material]]", &[Materials, Optimize]),
     ("[limits] mass", &[Optimize]),
     ("[limits] radius", &[Optimize]),
@@ -162,9 +210,13 @@ pub(super) fn given(file: &toml::Table) -> Vec<String> {
     let mut keys = Vec::new();
     for (name, value) in file {
         match value {
-            toml::Value::Table(_) if name == "values" || name == "units" => keys.push(format!("[{name}]")),
+            toml::Value::Table(_) if name == "values" || name == "units" => {
+                keys.push(format!("[{name}]"))
+            }
             toml::Value::Array(_) if name == "material" => keys.push("[[material]]".to_owned()),
-            toml::Value::Table(section) => keys.extend(section.keys().map(|key| format!("[{name}] {key}"))),
+            toml::Value::Table(section) => {
+                keys.extend(section.keys().map(|key| format!("[{name}] {key}")))
+            }
             _ => keys.push(name.clone()),
         }
     }
@@ -186,7 +238,9 @@ pub enum UnreadKey {
         others: String,
     },
     /// A key that the same command reads, but not beside what else the file has.
-    #[error("`{key}` says nothing beside the equation, the mechanism or the main mass of the file: leave it out")]
+    #[error(
+        "`{key}` says nothing beside the equation, the mechanism or the main mass of the file: leave it out"
+    )]
     Beside {
         /// The key, with its section.
         key: String,
@@ -210,7 +264,10 @@ impl Problem {
     /// # Errors
     /// [`UnreadKey`] names the first, and the commands that read it.
     pub fn check_keys(&self, reader: Reader) -> Result<(), UnreadKey> {
-        let described = self.given.iter().any(|key| key.starts_with('[') && key != "[values]");
+        let described = self
+            .given
+            .iter()
+            .any(|key| key.starts_with('[') && key != "[values]");
         if matches!(reader, Derive | Compare | Stability | Response)
             && self.equation.is_none()
             && self.lagrangian.is_none()
@@ -229,7 +286,9 @@ impl Problem {
                     }
                 }
                 if names.is_empty() {
-                    return Err(UnreadKey::Beside { key: key.to_owned() });
+                    return Err(UnreadKey::Beside {
+                        key: key.to_owned(),
+                    });
                 }
                 return Err(UnreadKey::Key {
                     key: key.to_owned(),
@@ -249,7 +308,10 @@ mod tests {
     #[test]
     fn every_parameter_of_a_study_has_its_key() {
         for parameter in crate::impact::Parameter::ALL {
-            assert!(KEYS.iter().any(|(key, _)| *key == parameter.to_string()), "{parameter}");
+            assert!(
+                KEYS.iter().any(|(key, _)| *key == parameter.to_string()),
+                "{parameter}"
+            );
         }
     }
 
@@ -280,7 +342,9 @@ mod tests {
             assert!(expected.len() > 1, "{error}");
             for name in expected {
                 let key = format!("{prefix}{name}");
-                let is_section = KEYS.iter().any(|(known, _)| known.contains(&format!("[{name}]")));
+                let is_section = KEYS
+                    .iter()
+                    .any(|(known, _)| known.contains(&format!("[{name}]")));
                 let known = KEYS.iter().any(|(known, _)| *known == key);
                 assert!(known || prefix.is_empty() && is_section, "{key}");
             }

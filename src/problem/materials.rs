@@ -1,7 +1,9 @@
-//! What `materials` reads of a problem file: a design, what damps it, and `[[material]]`, the barriers that are tried.
+//! What `materials` reads of a problem file: a design, what damps it, and `[[material]]`, the
+//! barriers that are tried.
 //!
-//! In: a [`Problem`]. Out: a [`MaterialQuestion`]. A material has the modulus of its contact by the rule of the other files: alone as
-//! in the paper, or with its Poisson's ratio under a rigid sphere or, where `[sphere]` has a modulus, that of both bodies.
+//! In: a [`Problem`]. Out: a [`MaterialQuestion`]. A material has the modulus of its contact by the
+//! rule of the other files: alone as in the paper, or with its Poisson's ratio under a rigid sphere
+//! or, where `[sphere]` has a modulus, that of both bodies.
 
 use thiserror::Error;
 
@@ -9,8 +11,8 @@ use super::document::MaterialSection;
 use super::simulate::refuse_two_forms;
 use super::{DesignError, Problem, ProblemError, Reader, SimulateError, SphereSection, UnreadKey};
 use crate::impact::{
-    ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, Integrator, Material, MaterialQuestion, Modulus, Parameter,
-    default_lambda,
+    ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, Integrator, Material, MaterialQuestion,
+    Modulus, Parameter, default_lambda,
 };
 
 /// Why a problem file is no study of materials.
@@ -30,7 +32,9 @@ pub enum MaterialsFileError {
     #[error("a study of materials needs a barrier: leave out `barrier = false`")]
     NoBarrier,
     /// An empty list.
-    #[error("`material = []` lists no material: give [[material]] with a name and a modulus, or leave it out")]
+    #[error(
+        "`material = []` lists no material: give [[material]] with a name and a modulus, or leave it out"
+    )]
     NoMaterial,
     /// A material that is none.
     #[error("material `{name}`: {error}")]
@@ -57,7 +61,9 @@ pub enum MaterialsFileError {
         other: &'static str,
     },
     /// A speed at which nothing is stated.
-    #[error("material `{0}`: `at_speed` changes nothing without `restitution`: give that too, or leave it out")]
+    #[error(
+        "material `{0}`: `at_speed` changes nothing without `restitution`: give that too, or leave it out"
+    )]
     SpeedAlone(String),
 }
 
@@ -72,7 +78,8 @@ impl MaterialsFileError {
 }
 
 impl Problem {
-    /// The study that this file asks for: of the paper's Table 2 and its own materials, or `only_own` of these alone.
+    /// The study that this file asks for: of the paper's Table 2 and its own materials, or
+    /// `only_own` of these alone.
     ///
     /// # Errors
     /// [`MaterialsFileError`] names the key, or the material.
@@ -125,7 +132,8 @@ impl Problem {
         })
     }
 
-    /// The same file as it describes the design alone, whose barrier is the modulus at which a damping is what is given.
+    /// The same file as it describes the design alone, whose barrier is the modulus at which a
+    /// damping is what is given.
     pub(super) fn for_design(&self) -> Self {
         Self {
             sphere: SphereSection {
@@ -138,7 +146,10 @@ impl Problem {
     }
 
     /// The materials of the file, after those that are there already.
-    pub(super) fn own_materials(&self, materials: &mut Vec<Material>) -> Result<(), MaterialsFileError> {
+    pub(super) fn own_materials(
+        &self,
+        materials: &mut Vec<Material>,
+    ) -> Result<(), MaterialsFileError> {
         for section in &self.material {
             let material = self.a_material(section)?;
             if materials.iter().any(|known| known.name == material.name) {
@@ -147,7 +158,12 @@ impl Problem {
             materials.push(material);
         }
         let two_bodies = self.sphere.modulus.is_some() || self.sphere.poisson.is_some();
-        if two_bodies && self.material.iter().all(|material| material.poisson.is_none()) {
+        if two_bodies
+            && self
+                .material
+                .iter()
+                .all(|material| material.poisson.is_none())
+        {
             let key = if self.sphere.modulus.is_some() {
                 "[sphere] modulus"
             } else {
@@ -195,8 +211,14 @@ impl Problem {
         })
     }
 
-    pub(super) fn yield_limit(&self, key: &'static str, limit: Option<f64>) -> Result<Option<f64>, DesignError> {
-        limit.map(|limit| super::design::positive(key, limit)).transpose()
+    pub(super) fn yield_limit(
+        &self,
+        key: &'static str,
+        limit: Option<f64>,
+    ) -> Result<Option<f64>, DesignError> {
+        limit
+            .map(|limit| super::design::positive(key, limit))
+            .transpose()
     }
 }
 
@@ -240,7 +262,9 @@ mod tests {
         let cork = "[[material]]\nname = \"cork\"\nmodulus = 2e7\n";
         assert_eq!(moduli(cork), [2e7]);
         assert_eq!(moduli(&format!("{cork}poisson = 0.5")), [2e7 / 0.75]);
-        let both = moduli(&format!("{cork}poisson = 0.5\n[sphere]\nmodulus = 1e8\npoisson = 0"));
+        let both = moduli(&format!(
+            "{cork}poisson = 0.5\n[sphere]\nmodulus = 1e8\npoisson = 0"
+        ));
         assert!((both[0] * (0.75 / 2e7 + 1.0 / 1e8) - 1.0).abs() < 1e-15);
     }
 }

@@ -1,4 +1,5 @@
-//! What a file says of a mechanism: energies, forces, units; and the equation that follows, where there is one coordinate.
+//! What a file says of a mechanism: energies, forces, units; and the equation that follows, where
+//! there is one coordinate.
 
 use std::collections::BTreeMap;
 
@@ -32,7 +33,9 @@ pub enum MechanismFileError {
     #[error("[units]: {0}")]
     Unit(#[from] UnitError),
     /// Two equations of motion.
-    #[error("the file has an `equation` and a [lagrangian], which gives another: leave one of them out")]
+    #[error(
+        "the file has an `equation` and a [lagrangian], which gives another: leave one of them out"
+    )]
     Twice,
     /// Units without a mechanism.
     #[error("[units] belong to the energies of a [lagrangian], which the file does not have")]
@@ -75,7 +78,8 @@ impl MechanismFileError {
 }
 
 impl Problem {
-    /// The mechanism of the file and the units of its letters, ready for [`study`](crate::mechanics::study).
+    /// The mechanism of the file and the units of its letters, ready for
+    /// [`study`](crate::mechanics::study).
     ///
     /// # Errors
     /// [`MechanismFileError`] names the key; values as in [`Problem::exact_values`].
@@ -88,7 +92,10 @@ impl Problem {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn mechanism(&self) -> Result<MechanismQuestion, MechanismFileError> {
-        let section = self.lagrangian.as_ref().ok_or(MechanismFileError::NoMechanism)?;
+        let section = self
+            .lagrangian
+            .as_ref()
+            .ok_or(MechanismFileError::NoMechanism)?;
         let mechanism = section.mechanism()?;
         let units = match self.units.is_empty() {
             true => None,
@@ -118,11 +125,15 @@ impl Problem {
             }),
             Err(error) => Err(error),
         };
-        Ok(self.units.iter().map(unit).collect::<Result<_, UnitError>>()?)
+        Ok(self
+            .units
+            .iter()
+            .map(unit)
+            .collect::<Result<_, UnitError>>()?)
     }
 
-    /// The same file with the equation that its energies give, where it has one coordinate: what derives, compares and simulates
-    /// reads that.
+    /// The same file with the equation that its energies give, where it has one coordinate: what
+    /// derives, compares and simulates reads that.
     ///
     /// # Errors
     /// Energies that give none, or terms of a wrong unit.
@@ -137,16 +148,25 @@ impl Problem {
             return Err(MechanismFileError::Twice.into());
         }
         let question = self.mechanism()?;
-        let equations = question.mechanism.equations().map_err(MechanismFileError::from)?;
+        let equations = question
+            .mechanism
+            .equations()
+            .map_err(MechanismFileError::from)?;
         if let Some(units) = &question.units {
             question
                 .mechanism
                 .check_units(units)
                 .map_err(MechanismFileError::from)?;
         }
-        // A mass that stands in all energies is a letter of the file whose value says nothing of the motion.
+        // A mass that stands in all energies is a letter of the file whose value says nothing of
+        // the motion.
         let cancels = |name: &Symbol| equations.left.iter().all(|left| !left.contains(*name));
-        self.cancelled = question.mechanism.parameters().into_iter().filter(cancels).collect();
+        self.cancelled = question
+            .mechanism
+            .parameters()
+            .into_iter()
+            .filter(cancels)
+            .collect();
         if let [left] = equations.left.as_slice() {
             self.equation = Some(format!("{left} = 0"));
         }
@@ -159,7 +179,10 @@ impl Problem {
     /// A coordinate of several letters, or a parameter that bears the name of an answer.
     pub(super) fn check_derived_equation(&self) -> Result<(), MechanismFileError> {
         let (Some(section), Some(equation)) = (&self.lagrangian, &self.equation) else {
-            let count = self.lagrangian.as_ref().map_or(1, |section| section.coordinates.len());
+            let count = self
+                .lagrangian
+                .as_ref()
+                .map_or(1, |section| section.coordinates.len());
             return match count {
                 1 => Ok(()),
                 count => Err(MechanismFileError::Several(count)),
@@ -187,11 +210,23 @@ impl LagrangianSection {
         if self.coordinates.is_empty() {
             return Err(MechanismFileError::Missing("coordinates"));
         }
-        let kinetic = self.kinetic.as_ref().ok_or(MechanismFileError::Missing("kinetic"))?;
-        let or_zero = |key: &str, text: &Option<String>| text.as_ref().map_or(Ok(Expr::zero()), |text| read(key, text));
-        let force = |(on, text): (&String, &String)| Ok((Symbol::new(on), read(&format!("forces.{on}"), text)?));
+        let kinetic = self
+            .kinetic
+            .as_ref()
+            .ok_or(MechanismFileError::Missing("kinetic"))?;
+        let or_zero = |key: &str, text: &Option<String>| {
+            text.as_ref()
+                .map_or(Ok(Expr::zero()), |text| read(key, text))
+        };
+        let force = |(on, text): (&String, &String)| {
+            Ok((Symbol::new(on), read(&format!("forces.{on}"), text)?))
+        };
         Ok(Mechanism {
-            coordinates: self.coordinates.iter().map(|name| Symbol::new(name)).collect(),
+            coordinates: self
+                .coordinates
+                .iter()
+                .map(|name| Symbol::new(name))
+                .collect(),
             kinetic: read("kinetic", kinetic)?,
             potential: or_zero("potential", &self.potential)?,
             dissipation: or_zero("dissipation", &self.dissipation)?,

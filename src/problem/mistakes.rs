@@ -1,8 +1,8 @@
 //! What is wrong with a TOML file, in words that need no Rust.
 //!
-//! In: the error of the parser: words and a place, for serde hands on nothing else. Out: the same in the words of a problem
-//! file. So its words are read here, and here alone; those of every kind of mistake are pinned by the tests below, and a
-//! message of another form is shown as it stands.
+//! In: the error of the parser: words and a place, for serde hands on nothing else. Out: the same
+//! in the words of a problem file. So its words are read here, and here alone; those of every kind
+//! of mistake are pinned by the tests below, and a message of another form is shown as it stands.
 
 use std::ops::Range;
 
@@ -17,7 +17,9 @@ pub(crate) fn in_words(text: &str, error: &toml::de::Error) -> ProblemError {
     let what = said.lines().next().unwrap_or_default();
     let what = match mismatch(what) {
         Some(message) => message,
-        None if what.starts_with("invalid basic string, expected `\"`") => "the text in quotes does not end".to_owned(),
+        None if what.starts_with("invalid basic string, expected `\"`") => {
+            "the text in quotes does not end".to_owned()
+        }
         None if what.starts_with("cannot recurse") => "nested too deep".to_owned(),
         None => what.replacen("unknown field ", "unknown key ", 1),
     };
@@ -80,7 +82,10 @@ mod tests {
     fn mistakes_are_told_without_the_names_of_types() {
         let deep = format!("a = {}", "[".repeat(50_000));
         for (text, expected) in [
-            ("[pendulum]\namplitude = \"big\"", "line 2: expected a number, not text"),
+            (
+                "[pendulum]\namplitude = \"big\"",
+                "line 2: expected a number, not text",
+            ),
             ("equation = 3", "line 1: expected text in quotes, not 3"),
             (
                 "[run]\nstep_limit = -3",
@@ -90,9 +95,18 @@ mod tests {
                 "[run]\nstep_limit = 2.5",
                 "line 2: expected a whole number, 0 or more, not 2.5",
             ),
-            ("pendulum = 3", "line 1: expected a section in brackets, not 3"),
-            ("[pendulum]\namplitude = []", "line 2: expected a number, not a list"),
-            ("[pendulum]\namplitude = true", "line 2: expected a number, not true"),
+            (
+                "pendulum = 3",
+                "line 1: expected a section in brackets, not 3",
+            ),
+            (
+                "[pendulum]\namplitude = []",
+                "line 2: expected a number, not a list",
+            ),
+            (
+                "[pendulum]\namplitude = true",
+                "line 2: expected a number, not true",
+            ),
             (&deep, "line 1: nested too deep"),
         ] {
             let error = text.parse::<Problem>().expect_err("a mistake").to_string();

@@ -1,17 +1,19 @@
 //! Problem files: one document, in TOML, and what each command reads in it.
 //!
-//! In: the text of a file: every key optional, the paper's value the default, an unknown key an error. Angles in radians,
-//! masses, lengths and materials in SI units, the rest dimensionless as in the paper's equation (7), time in units of 1/omega, omega^2 = g/L.
-//! Out: a [`Problem`], and from it, with the keys that a command would ignore refused by name:
+//! In: the text of a file: every key optional, the paper's value the default, an unknown key an
+//! error. Angles in radians, masses, lengths and materials in SI units, the rest dimensionless as
+//! in the paper's equation (7), time in units of 1/omega, omega^2 = g/L. Out: a [`Problem`], and
+//! from it, with the keys that a command would ignore refused by name:
 //!
 //! - [`Problem::formula`], what `derive`, `compare` and `response` read;
 //! - an impact in closed form, [`Setup`](crate::impact::Setup), by `TryFrom`;
-//! - a motion of the full equation, [`Simulate`], by `TryFrom`, or by [`Problem::simulate`] where parameters are swept;
+//! - a motion of the full equation, [`Simulate`], by `TryFrom`, or by [`Problem::simulate`] where
+//!   parameters are swept;
 //! - barriers of several materials, [`Problem::materials`];
 //! - a search for the best design, [`Problem::optimize`];
 //! - the motion of an equation of one's own, [`Problem::course`];
-//! - a mechanism by its energies, [`Problem::mechanism`]: of one with a single coordinate the equation is derived at once, and every
-//!   command that reads an equation reads that.
+//! - a mechanism by its energies, [`Problem::mechanism`]: of one with a single coordinate the
+//!   equation is derived at once, and every command that reads an equation reads that.
 
 mod design;
 mod document;
@@ -35,9 +37,9 @@ use crate::values::ValueError;
 
 pub use design::DesignError;
 pub use document::{
-    Barrier, BarrierSection, BarrierSide, Contact, Damping, DesignSection, Excitation, GeneticSection,
-    LagrangianSection, LimitsSection, MaterialSection, NoBarrier, Objectives, Order, Pendulum, PrimarySection, Problem,
-    Range, Run, SphereSection,
+    Barrier, BarrierSection, BarrierSide, Contact, Damping, DesignSection, Excitation,
+    GeneticSection, LagrangianSection, LimitsSection, MaterialSection, NoBarrier, Objectives,
+    Order, Pendulum, PrimarySection, Problem, Range, Run, SphereSection,
 };
 pub use formula::{Formula, FormulaError};
 pub use impact::ImpactFileError;
@@ -115,7 +117,8 @@ impl FromStr for Problem {
             return Err(ProblemError::TooLarge);
         }
         let text = text.trim_start_matches('\u{feff}');
-        let problem: Self = toml::from_str(text).map_err(|error| mistakes::in_words(text, &error))?;
+        let problem: Self =
+            toml::from_str(text).map_err(|error| mistakes::in_words(text, &error))?;
         let given = toml::from_str(text).map_or_else(|_| Vec::new(), |file| keys::given(&file));
         Self { given, ..problem }.with_derived_equation()
     }
@@ -137,13 +140,20 @@ impl Problem {
 
     /// Whether something that damps is given by mass, length and gravity.
     fn damps_in_si_units(&self) -> bool {
-        let in_si = [self.contact.damping, self.damping.viscous, self.damping.torque];
+        let in_si = [
+            self.contact.damping,
+            self.damping.viscous,
+            self.damping.torque,
+        ];
         in_si.iter().any(Option::is_some)
     }
 
-    /// The unit of `at_speed`: m/s where the file gives any of its numbers in SI units, or one of the `swept` ones is.
+    /// The unit of `at_speed`: m/s where the file gives any of its numbers in SI units, or one of
+    /// the `swept` ones is.
     fn speed_unit(&self, swept: &[Parameter]) -> SpeedUnit {
-        use Parameter::{ContactDamping, Gravity, Lambda, Length, Mass, Modulus, Radius, Torque, Viscous};
+        use Parameter::{
+            ContactDamping, Gravity, Lambda, Length, Mass, Modulus, Radius, Torque, Viscous,
+        };
         let of_pendulum = self.equation.is_none() && self.contact.force.is_none();
         let sections = [
             "[design]",
@@ -182,7 +192,9 @@ impl Problem {
     fn stiffness_source(&self, design: &Design) -> &'static str {
         if self.contact.gamma.is_none() {
             return match *design == Design::default() {
-                true => "equation (8) with the paper's Table 5 and l = L; the paper prints no gamma",
+                true => {
+                    "equation (8) with the paper's Table 5 and l = L; the paper prints no gamma"
+                }
                 false => "equation (8) with the given design and l = L",
             };
         }
@@ -194,12 +206,17 @@ impl Problem {
             (false, false) => &["mass", "radius", "modulus", "poisson", "length", "gravity"],
         };
         let gives = |sections: &[&str]| {
-            let mut keys = without_say
-                .iter()
-                .flat_map(|key| sections.iter().map(move |section| format!("[{section}] {key}")));
+            let mut keys = without_say.iter().flat_map(|key| {
+                sections
+                    .iter()
+                    .map(move |section| format!("[{section}] {key}"))
+            });
             keys.any(|key| self.gives(&key))
         };
-        match (gives(&["design"]), gives(&["pendulum", "sphere", "barrier"])) {
+        match (
+            gives(&["design"]),
+            gives(&["pendulum", "sphere", "barrier"]),
+        ) {
             (true, _) => "given: [design] has no say in it",
             (false, true) => "given: masses, lengths and moduli have no say in it",
             (false, false) => "given",
@@ -238,13 +255,19 @@ mod tests {
             file.parse::<Problem>().unwrap().stiffness().unwrap().1
         };
         assert_eq!(source(""), "given");
-        assert_eq!(source("[design]\nmass = 0.02"), "given: [design] has no say in it");
+        assert_eq!(
+            source("[design]\nmass = 0.02"),
+            "given: [design] has no say in it"
+        );
         for beside in [
             "[pendulum]\nmass = 0.02",
             "[sphere]\nradius = 0.02",
             "[barrier]\nmodulus = 2e9",
         ] {
-            assert_eq!(source(beside), "given: masses, lengths and moduli have no say in it");
+            assert_eq!(
+                source(beside),
+                "given: masses, lengths and moduli have no say in it"
+            );
         }
         // mu = gamma*lambda*sqrt(g*L)
         assert_eq!(source("lambda = 0.1\n[pendulum]\nlength = 0.2"), "given");

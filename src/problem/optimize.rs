@@ -1,14 +1,16 @@
-//! What `optimize` reads of a problem file: a pendulum and what damps it, `[limits]`, `[genetic]`, and `[[material]]` to choose from.
+//! What `optimize` reads of a problem file: a pendulum and what damps it, `[limits]`, `[genetic]`,
+//! and `[[material]]` to choose from.
 //!
-//! In: a [`Problem`]. Out: a [`Question`]. A quantity of the paper's Table 4 varies between its limits there unless `[limits]` has others;
-//! given in `[design]`, or by its own name, it is fixed. With `[[material]]` a material takes the place of the modulus.
+//! In: a [`Problem`]. Out: a [`Question`]. A quantity of the paper's Table 4 varies between its
+//! limits there unless `[limits]` has others; given in `[design]`, or by its own name, it is fixed.
+//! With `[[material]]` a material takes the place of the modulus.
 
 use thiserror::Error;
 
 use super::simulate::refuse_two_forms;
 use super::{
-    DesignError, MaterialsFileError, Objectives, PrimaryFileError, Problem, ProblemError, Reader, SimulateError,
-    UnreadKey,
+    DesignError, MaterialsFileError, Objectives, PrimaryFileError, Problem, ProblemError, Reader,
+    SimulateError, UnreadKey,
 };
 use crate::genetic::{Coding, Crossover, Mutation, Options, Penalty, StallTest};
 use crate::impact::{ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, Parameter, default_lambda};
@@ -35,7 +37,9 @@ pub enum OptimizeFileError {
     #[error("a search for the best damper needs a barrier: leave out `barrier = false`")]
     NoBarrier,
     /// An empty list.
-    #[error("`material = []` lists no material: give [[material]] with a name and a modulus, or leave it out")]
+    #[error(
+        "`material = []` lists no material: give [[material]] with a name and a modulus, or leave it out"
+    )]
     NoMaterial,
     /// A quantity that varies and is fixed.
     #[error(
@@ -48,19 +52,29 @@ pub enum OptimizeFileError {
         name: &'static str,
     },
     /// A modulus beside materials.
-    #[error("`{0}` changes nothing beside [[material]], which have their own moduli: leave one of them out")]
+    #[error(
+        "`{0}` changes nothing beside [[material]], which have their own moduli: leave one of them out"
+    )]
     ModulusBesideMaterials(String),
     /// A density that has nothing to work on.
-    #[error("`[limits] density` makes the mass follow the radius: let mass and radius both vary, or leave it out")]
+    #[error(
+        "`[limits] density` makes the mass follow the radius: let mass and radius both vary, or leave it out"
+    )]
     Density,
     /// Bodies that may yield at any pressure.
-    #[error("`[limits] elastic` needs a yield limit: give `yield` in [sphere], [barrier] or [[material]]")]
+    #[error(
+        "`[limits] elastic` needs a yield limit: give `yield` in [sphere], [barrier] or [[material]]"
+    )]
     NoYield,
     /// A yield limit that nobody reads.
-    #[error("`{0}` changes nothing without `elastic = true` in [limits]: give that too, or leave it out")]
+    #[error(
+        "`{0}` changes nothing without `elastic = true` in [limits]: give that too, or leave it out"
+    )]
     YieldAlone(&'static str),
     /// A yield limit of what has one of its own.
-    #[error("`[barrier] yield` changes nothing beside [[material]]: give each material its `yield`")]
+    #[error(
+        "`[barrier] yield` changes nothing beside [[material]]: give each material its `yield`"
+    )]
     YieldBesideMaterials,
     /// A main mass that is not there.
     #[error("the rest time of the main mass needs [primary]: its mass, stiffness and displacement")]
@@ -152,7 +166,8 @@ impl Problem {
     /// The search that this file asks for; an empty one is the paper's.
     ///
     /// # Errors
-    /// [`OptimizeFileError`] names the key. Whether the options make a search is seen by [`Question::check`].
+    /// [`OptimizeFileError`] names the key. Whether the options make a search is seen by
+    /// [`Question::check`].
     ///
     /// ```
     /// use lindstedt::problem::Problem;
@@ -248,7 +263,10 @@ impl Problem {
         let limits = &self.limits;
         let of = [
             (Objective::RestTime, limits.max_rest_time),
-            (Objective::DimensionlessRestTime, limits.max_dimensionless_rest_time),
+            (
+                Objective::DimensionlessRestTime,
+                limits.max_dimensionless_rest_time,
+            ),
             (Objective::PeakForce, limits.max_peak_force),
             (Objective::PeakPressure, limits.max_peak_pressure),
             (Objective::Impacts, limits.max_impacts),
@@ -285,10 +303,15 @@ impl Problem {
             ("[barrier] yield", question.barrier_yield.is_some()),
             (
                 "[[material]] yield",
-                materials.iter().any(|material| material.yield_limit.is_some()),
+                materials
+                    .iter()
+                    .any(|material| material.yield_limit.is_some()),
             ),
         ];
-        match (limits.elastic, stated.into_iter().find(|(_, stated)| *stated)) {
+        match (
+            limits.elastic,
+            stated.into_iter().find(|(_, stated)| *stated),
+        ) {
             (true, None) => Err(OptimizeFileError::NoYield),
             (false, Some((key, _))) => Err(OptimizeFileError::YieldAlone(key)),
             _ => Ok(()),
@@ -321,7 +344,9 @@ impl Problem {
                     question.case.start.unwrap_or(question.case.amplitude),
                     question.case.speed,
                 ];
-                let moving = [main_mass.displacement, main_mass.speed].into_iter().chain(pendulum);
+                let moving = [main_mass.displacement, main_mass.speed]
+                    .into_iter()
+                    .chain(pendulum);
                 if moving.into_iter().all(|value| value == 0.0) {
                     return Err(PrimaryFileError::AtRest.into());
                 }
@@ -348,8 +373,14 @@ impl Problem {
         let count = |given: Option<u32>, usual: usize| given.map_or(usual, |given| given as usize);
         options.population = count(section.population, options.population);
         options.generations = count(section.generations, options.generations);
-        options.constraint_tolerance = section.constraint_tolerance.unwrap_or(options.constraint_tolerance);
-        self.needs("constraint_tolerance", question.density.is_some(), "[limits] density")?;
+        options.constraint_tolerance = section
+            .constraint_tolerance
+            .unwrap_or(options.constraint_tolerance);
+        self.needs(
+            "constraint_tolerance",
+            question.density.is_some(),
+            "[limits] density",
+        )?;
         question.seed = section.seed.unwrap_or(question.seed);
         if question.objectives.len() > 1 {
             question.runs = count(section.runs, SEVERAL_RUNS);
@@ -363,14 +394,22 @@ impl Problem {
         }
         question.runs = count(section.runs, question.runs);
         options.elite = count(section.elite, options.elite);
-        options.crossover_fraction = section.crossover_fraction.unwrap_or(options.crossover_fraction);
+        options.crossover_fraction = section
+            .crossover_fraction
+            .unwrap_or(options.crossover_fraction);
         options.stall_generations = count(section.stall_generations, options.stall_generations);
-        options.function_tolerance = section.function_tolerance.unwrap_or(options.function_tolerance);
+        options.function_tolerance = section
+            .function_tolerance
+            .unwrap_or(options.function_tolerance);
         self.operators(options)?;
         self.penalty(question)?;
-        let tests = [("average", StallTest::Average), ("weighted", StallTest::Weighted)];
+        let tests = [
+            ("average", StallTest::Average),
+            ("weighted", StallTest::Weighted),
+        ];
         let usual = question.genetic.stall_test;
-        question.genetic.stall_test = named("stall_test", section.stall_test.as_ref(), usual, &tests)?;
+        question.genetic.stall_test =
+            named("stall_test", section.stall_test.as_ref(), usual, &tests)?;
         Ok(())
     }
 
@@ -396,7 +435,12 @@ impl Problem {
             Crossover::Heuristic(_) => Crossover::Heuristic(ratio),
             other => other,
         };
-        options.crossover = named("crossover", section.crossover.as_ref(), usual_crossover, &crossover)?;
+        options.crossover = named(
+            "crossover",
+            section.crossover.as_ref(),
+            usual_crossover,
+            &crossover,
+        )?;
         let heuristic = matches!(options.crossover, Crossover::Heuristic(_));
         self.needs("crossover_ratio", heuristic, "crossover = \"heuristic\"")?;
         let rate = section.mutation_rate.unwrap_or(DEFAULT_RATE);
@@ -408,7 +452,12 @@ impl Problem {
             Mutation::BitFlips(_) => Mutation::BitFlips(rate),
             Mutation::AdaptiveFeasible => Mutation::AdaptiveFeasible,
         };
-        options.mutation = named("mutation", section.mutation.as_ref(), usual_mutation, &mutation)?;
+        options.mutation = named(
+            "mutation",
+            section.mutation.as_ref(),
+            usual_mutation,
+            &mutation,
+        )?;
         let flips = matches!(options.mutation, Mutation::BitFlips(_));
         self.needs("mutation_rate", flips, "mutation = \"bit-flip\"")?;
         Ok(())
@@ -417,7 +466,8 @@ impl Problem {
     /// What a design pays that breaks a constraint.
     fn penalty(&self, question: &mut Question) -> Result<(), OptimizeFileError> {
         let section = &self.genetic;
-        let constrained = question.density.is_some() || question.elastic || !question.limits.is_empty();
+        let constrained =
+            question.density.is_some() || question.elastic || !question.limits.is_empty();
         let lagrangian = Penalty::AugmentedLagrangian {
             initial: section.initial_penalty.unwrap_or(10.0),
             factor: section.penalty_factor.unwrap_or(100.0),
@@ -427,26 +477,43 @@ impl Problem {
             ("feasible-first", Penalty::FeasibleFirst),
             ("augmented-lagrangian", lagrangian),
         ];
-        // No random design has just the density, and of hard limits none may be kept by chance: death would leave nobody.
+        // No random design has just the density, and of hard limits none may be kept by chance:
+        // death would leave nobody.
         let usual = match question.density {
             Some(_) => lagrangian,
             None if constrained => Penalty::FeasibleFirst,
             None => Penalty::Death,
         };
         question.genetic.penalty = named("penalty", section.penalty.as_ref(), usual, &penalty)?;
-        let is_lagrangian = matches!(question.genetic.penalty, Penalty::AugmentedLagrangian { .. });
+        let is_lagrangian = matches!(
+            question.genetic.penalty,
+            Penalty::AugmentedLagrangian { .. }
+        );
         self.needs(
             "penalty",
             constrained,
             "a constraint beyond the limits of the variables, in [limits]",
         )?;
-        self.needs("initial_penalty", is_lagrangian, "penalty = \"augmented-lagrangian\"")?;
-        self.needs("penalty_factor", is_lagrangian, "penalty = \"augmented-lagrangian\"")?;
+        self.needs(
+            "initial_penalty",
+            is_lagrangian,
+            "penalty = \"augmented-lagrangian\"",
+        )?;
+        self.needs(
+            "penalty_factor",
+            is_lagrangian,
+            "penalty = \"augmented-lagrangian\"",
+        )?;
         Ok(())
     }
 
     /// An error where a key is given whose condition, named by `other`, is not there.
-    fn needs(&self, key: &'static str, there: bool, other: &'static str) -> Result<(), OptimizeFileError> {
+    fn needs(
+        &self,
+        key: &'static str,
+        there: bool,
+        other: &'static str,
+    ) -> Result<(), OptimizeFileError> {
         match self.gives(&format!("[genetic] {key}")) && !there {
             true => Err(OptimizeFileError::NoEffect { key, other }),
             false => Ok(()),
@@ -507,7 +574,10 @@ mod tests {
     #[test]
     fn what_would_change_nothing_is_refused() {
         for (text, words) in [
-            ("[limits]\nmass = [1, 2]\n[design]\nmass = 1", "[limits] mass"),
+            (
+                "[limits]\nmass = [1, 2]\n[design]\nmass = 1",
+                "[limits] mass",
+            ),
             (
                 "[limits]\nmodulus = [1, 2]\n[[material]]\nname = \"A\"\nmodulus = 1e9",
                 "[[material]]",
@@ -516,14 +586,20 @@ mod tests {
                 "[design]\nmodulus = 1e9\n[[material]]\nname = \"A\"\nmodulus = 1e9",
                 "[[material]]",
             ),
-            ("[limits]\ndensity = 7850\n[design]\nradius = 0.01", "density"),
+            (
+                "[limits]\ndensity = 7850\n[design]\nradius = 0.01",
+                "density",
+            ),
             ("[limits]\nelastic = true", "yield limit"),
             ("[sphere]\nyield = 1e9", "elastic"),
             ("[genetic]\npenalty = \"death\"", "penalty"),
             ("[genetic]\ninitial_penalty = 10", "initial_penalty"),
             ("[genetic]\nbits = 8", "bits"),
             ("[genetic]\nmutation_rate = 0.1", "bit-flip"),
-            ("[genetic]\nobjective = [\"mass\", \"rest_time\"]\nelite = 2", "NSGA-II"),
+            (
+                "[genetic]\nobjective = [\"mass\", \"rest_time\"]\nelite = 2",
+                "NSGA-II",
+            ),
             ("[genetic]\nobjective = \"rest\"", "unknown"),
         ] {
             let error = asked(text).expect_err(text).to_string();

@@ -28,10 +28,14 @@ pub enum PrimaryFileError {
     #[error(transparent)]
     Simulate(#[from] SimulateError),
     /// A key that must be there.
-    #[error("[primary] needs `{0}`: the mass of the main mass in kg and the stiffness of its spring in N/m")]
+    #[error(
+        "[primary] needs `{0}`: the mass of the main mass in kg and the stiffness of its spring in N/m"
+    )]
     Missing(&'static str),
     /// A force without its frequency, or the other way round.
-    #[error("`[primary] {key}` changes nothing without `[primary] {other}`: give that too, or leave it out")]
+    #[error(
+        "`[primary] {key}` changes nothing without `[primary] {other}`: give that too, or leave it out"
+    )]
     Alone {
         /// The key.
         key: &'static str,
@@ -57,10 +61,14 @@ pub enum PrimaryFileError {
     )]
     Tolerance,
     /// Nothing moves.
-    #[error("nothing moves: give [primary] a displacement, a speed or a force, or [pendulum] a start")]
+    #[error(
+        "nothing moves: give [primary] a displacement, a speed or a force, or [pendulum] a start"
+    )]
     AtRest,
     /// An excitation of the pivot.
-    #[error("[excitation] moves the pivot, which a main mass carries: give [primary] force and frequency instead")]
+    #[error(
+        "[excitation] moves the pivot, which a main mass carries: give [primary] force and frequency instead"
+    )]
     Driven,
 }
 
@@ -69,16 +77,17 @@ impl PrimaryFileError {
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Simulate(error) => error.help(),
-            Self::Missing(_) => {
-                Some("[primary] mass = 0.5, stiffness = 72, damping = 0.05, displacement = 0.02".to_owned())
-            }
+            Self::Missing(_) => Some(
+                "[primary] mass = 0.5, stiffness = 72, damping = 0.05, displacement = 0.02"
+                    .to_owned(),
+            ),
             _ => None,
         }
     }
 }
 
-/// How long both are followed where the file does not say, in units of 1/omega: until the main mass would have rested with the damper
-/// locked and without, within reason.
+/// How long both are followed where the file does not say, in units of 1/omega: until the main mass
+/// would have rested with the damper locked and without, within reason.
 fn long_enough(primary: &Primary) -> f64 {
     const USUAL: f64 = 300.0;
     const LONGEST: f64 = 3000.0;
@@ -86,12 +95,14 @@ fn long_enough(primary: &Primary) -> f64 {
     let rests = [others.locked.rest_time, others.without.rest_time]
         .into_iter()
         .flatten();
-    rests.fold(USUAL, |longest, rest| longest.max(1.2 * rest)).min(LONGEST)
+    rests
+        .fold(USUAL, |longest, rest| longest.max(1.2 * rest))
+        .min(LONGEST)
 }
 
 impl Problem {
-    /// The main mass of the file with its pendulum, in the units of equation (7), as if the file gave the values of `varied` too. The
-    /// pendulum hangs at rest unless the file says otherwise.
+    /// The main mass of the file with its pendulum, in the units of equation (7), as if the file
+    /// gave the values of `varied` too. The pendulum hangs at rest unless the file says otherwise.
     ///
     /// # Errors
     /// [`PrimaryFileError`] names the key.
@@ -106,7 +117,10 @@ impl Problem {
     /// assert!((heavier.case.primary.mass - 60.0).abs() < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn primary_case(&self, varied: &[(PrimaryParameter, f64)]) -> Result<PrimaryProblem, PrimaryFileError> {
+    pub fn primary_case(
+        &self,
+        varied: &[(PrimaryParameter, f64)],
+    ) -> Result<PrimaryProblem, PrimaryFileError> {
         if self.gives("[run] integrator_tolerance") {
             return Err(PrimaryFileError::Tolerance);
         }
@@ -121,7 +135,10 @@ impl Problem {
                 _ => None,
             })
             .collect();
-        let swept: Vec<Parameter> = of_pendulum.iter().map(|(parameter, _)| *parameter).collect();
+        let swept: Vec<Parameter> = of_pendulum
+            .iter()
+            .map(|(parameter, _)| *parameter)
+            .collect();
         let starts = [Parameter::Amplitude, Parameter::Start, Parameter::Speed];
         let hanging = Self {
             pendulum: Pendulum {
@@ -141,7 +158,11 @@ impl Problem {
         }
         let (model, Start { x, velocity }) = case.motion().map_err(SimulateError::from)?;
         let units = in_si(&case.design);
-        let main_mass = self.primary.unwrap_or_default().with(varied, &units)?.main_mass()?;
+        let main_mass = self
+            .primary
+            .unwrap_or_default()
+            .with(varied, &units)?
+            .main_mass()?;
         let primary = main_mass.primary(&units);
         let [displacement, speed] = main_mass.start(&units);
         let start = [x, velocity, displacement, speed];
@@ -151,7 +172,11 @@ impl Problem {
         let usual = PrimarySettings::default();
         let given = |key: &str| self.gives(&format!("[run] {key}"));
         Ok(PrimaryProblem {
-            case: PrimaryCase { primary, model, start },
+            case: PrimaryCase {
+                primary,
+                model,
+                start,
+            },
             settings: PrimarySettings {
                 duration: match given("duration") {
                     true => self.run.duration,
@@ -170,7 +195,8 @@ impl Problem {
 }
 
 impl Problem {
-    /// Whether the pendulum of a main mass hangs at rest at first: the file has no word of its start.
+    /// Whether the pendulum of a main mass hangs at rest at first: the file has no word of its
+    /// start.
     pub(super) fn hangs_at_rest(&self) -> bool {
         let starts = ["amplitude", "start", "speed"].map(|key| format!("[pendulum] {key}"));
         !starts.iter().any(|key| self.gives(key))
@@ -195,7 +221,11 @@ impl PrimarySection {
     ///
     /// # Errors
     /// The mass in two forms, or a ratio of masses that is not positive.
-    fn with(mut self, varied: &[(PrimaryParameter, f64)], units: &Units) -> Result<Self, PrimaryFileError> {
+    fn with(
+        mut self,
+        varied: &[(PrimaryParameter, f64)],
+        units: &Units,
+    ) -> Result<Self, PrimaryFileError> {
         for (parameter, value) in varied {
             let key = match parameter {
                 PrimaryParameter::Mass | PrimaryParameter::MassRatio => &mut self.mass,
@@ -232,7 +262,9 @@ impl PrimarySection {
     /// A key that is missing, alone, or no such number.
     pub(super) fn main_mass(&self) -> Result<MainMass, PrimaryFileError> {
         let mass = self.mass.ok_or(PrimaryFileError::Missing("mass"))?;
-        let stiffness = self.stiffness.ok_or(PrimaryFileError::Missing("stiffness"))?;
+        let stiffness = self
+            .stiffness
+            .ok_or(PrimaryFileError::Missing("stiffness"))?;
         let alone = |key, other| Err(PrimaryFileError::Alone { key, other });
         match (self.force, self.frequency) {
             (Some(_), None) => return alone("force", "frequency"),

@@ -33,7 +33,9 @@ pub enum SimulateError {
     #[error(transparent)]
     Case(#[from] CaseError),
     /// An equation of its own.
-    #[error("simulate follows the paper's equation (7): leave out `equation`, or use `lindstedt derive`")]
+    #[error(
+        "simulate follows the paper's equation (7): leave out `equation`, or use `lindstedt derive`"
+    )]
     Equation,
     /// A key that another one leaves nothing to say.
     #[error("`{key}` changes nothing where `{other}` is given: leave one of them out")]
@@ -50,10 +52,14 @@ pub enum SimulateError {
     #[error("`[pendulum] side` changes nothing beside {0} and a start: leave it out")]
     Side(&'static str),
     /// A modulus that is not that of one body.
-    #[error("`modulus` is that of the barrier alone, and `{0}` makes it that of two bodies: leave out one of them")]
+    #[error(
+        "`modulus` is that of the barrier alone, and `{0}` makes it that of two bodies: leave out one of them"
+    )]
     ModulusOfTwo(&'static str),
     /// A number that zero leaves nothing to say.
-    #[error("`{key}` changes nothing where `{other}` is 0: give it another value, or leave `{key}` out")]
+    #[error(
+        "`{key}` changes nothing where `{other}` is 0: give it another value, or leave `{key}` out"
+    )]
     Zero {
         /// The key.
         key: Parameter,
@@ -83,7 +89,9 @@ pub enum SimulateError {
     #[error("[damping] friction `{0}` is neither \"exact\" nor \"arctangent\"")]
     Friction(String),
     /// A tolerance that cannot be kept.
-    #[error("[run] integrator_tolerance must lie between 1e-15 and 0.01, not {0:e}: 1e-10 is a good choice")]
+    #[error(
+        "[run] integrator_tolerance must lie between 1e-15 and 0.01, not {0:e}: 1e-10 is a good choice"
+    )]
     Tolerance(f64),
     /// A limit that nothing or too much fits into: every step of a motion is kept.
     #[error("[run] step_limit must be a whole number from 1 to {MOST_STEPS}, not {0}")]
@@ -122,17 +130,20 @@ impl TryFrom<&Problem> for Simulate {
     /// ```
     fn try_from(problem: &Problem) -> Result<Self, SimulateError> {
         let asked = problem.simulate(&[])?;
-        // A case of its own must make a motion; where parameters are swept, their values are still to come.
+        // A case of its own must make a motion; where parameters are swept, their values are still
+        // to come.
         asked.case.motion()?;
         Ok(asked)
     }
 }
 
 impl Problem {
-    /// What this file says of motions whose `swept` parameters get other values later, as if it gave them too.
+    /// What this file says of motions whose `swept` parameters get other values later, as if it
+    /// gave them too.
     ///
     /// # Errors
-    /// [`SimulateError`] names the section and the key. Whether the numbers make a motion is seen by [`Case::motion`].
+    /// [`SimulateError`] names the section and the key. Whether the numbers make a motion is seen
+    /// by [`Case::motion`].
     ///
     /// ```
     /// use lindstedt::{impact::Parameter, problem::Problem};
@@ -143,7 +154,8 @@ impl Problem {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn simulate(&self, swept: &[Parameter]) -> Result<Simulate, SimulateError> {
-        let gives = |parameter: Parameter| swept.contains(&parameter) || self.gives_parameter(parameter);
+        let gives =
+            |parameter: Parameter| swept.contains(&parameter) || self.gives_parameter(parameter);
         self.check_swept(swept, gives)?;
         if self.equation.is_some() {
             return Err(SimulateError::Equation);
@@ -164,8 +176,12 @@ impl Problem {
                 ContactDamping::Mu(_) => "given",
                 ContactDamping::MuOverGamma(_) => "gamma*mu_over_gamma",
                 ContactDamping::Lambda(_) => "gamma*lambda*sqrt(g*L)",
-                ContactDamping::Restitution(_) if case.at_speed.is_some() => "for the restitution at at_speed",
-                ContactDamping::Restitution(_) => "for the restitution at the first touch without damping",
+                ContactDamping::Restitution(_) if case.at_speed.is_some() => {
+                    "for the restitution at at_speed"
+                }
+                ContactDamping::Restitution(_) => {
+                    "for the restitution at the first touch without damping"
+                }
                 ContactDamping::Coefficient(_) => "damping*L^2/(m*sqrt(g))",
             },
             units: self.simulation_units(&case.design),
@@ -215,7 +231,10 @@ impl Problem {
             left,
             right,
             gamma: self.contact.gamma,
-            contact_damping: self.contact.given_damping().unwrap_or(ContactDamping::Mu(0.0)),
+            contact_damping: self
+                .contact
+                .given_damping()
+                .unwrap_or(ContactDamping::Mu(0.0)),
             at_speed: self.contact.at_speed,
             speed_unit: self.speed_unit(&[]),
             zeta: self.damping.zeta,
@@ -252,21 +271,32 @@ impl Problem {
         })
     }
 
-    /// Refuses to sweep what changes nothing: for want of a barrier, because gamma is given, or swept as well, or beside a zero.
-    fn check_swept(&self, swept: &[Parameter], gives: impl Fn(Parameter) -> bool) -> Result<(), SimulateError> {
+    /// Refuses to sweep what changes nothing: for want of a barrier, because gamma is given, or
+    /// swept as well, or beside a zero.
+    fn check_swept(
+        &self,
+        swept: &[Parameter],
+        gives: impl Fn(Parameter) -> bool,
+    ) -> Result<(), SimulateError> {
         use Parameter::{
-            AtSpeed, Barrier as Place, Beta, ContactDamping as Coefficient, FrequencyRatio, Gamma, Gravity, Lambda,
-            Length, Mass, Modulus, Mu, MuOverGamma, Radius, Restitution, Torque, Viscous,
+            AtSpeed, Barrier as Place, Beta, ContactDamping as Coefficient, FrequencyRatio, Gamma,
+            Gravity, Lambda, Length, Mass, Modulus, Mu, MuOverGamma, Radius, Restitution, Torque,
+            Viscous,
         };
-        let zero = |key: Parameter, given: Option<f64>| !swept.contains(&key) && given.unwrap_or(0.0) == 0.0;
-        // c = 2*zeta*m*omega, torque = alpha*m*g*L; a main mass is measured in those of the pendulum.
-        let swing_in_si =
-            !zero(Viscous, self.damping.viscous) || !zero(Torque, self.damping.torque) || self.primary.is_some();
+        let zero = |key: Parameter, given: Option<f64>| {
+            !swept.contains(&key) && given.unwrap_or(0.0) == 0.0
+        };
+        // c = 2*zeta*m*omega, torque = alpha*m*g*L; a main mass is measured in those of the
+        // pendulum.
+        let swing_in_si = !zero(Viscous, self.damping.viscous)
+            || !zero(Torque, self.damping.torque)
+            || self.primary.is_some();
         // c = mu*m*sqrt(g)/L^2
         let in_si = swing_in_si || !zero(Coefficient, self.contact.damping);
         let at_speed_in_si = self.contact.at_speed.is_some() || swept.contains(&AtSpeed);
         let of_contact = |key: &Parameter| match key {
-            Gamma | Mu | MuOverGamma | Lambda | Restitution | AtSpeed | Coefficient | Radius | Modulus => true,
+            Gamma | Mu | MuOverGamma | Lambda | Restitution | AtSpeed | Coefficient | Radius
+            | Modulus => true,
             Mass | Length | Gravity => !swing_in_si,
             _ => false,
         };
@@ -275,10 +305,14 @@ impl Problem {
             first.map_or(Ok(()), |key| Err(SimulateError::NoBarrier(key)))?;
         }
         if self.contact.gamma == Some(0.0) && !swept.contains(&Gamma) {
-            let first = swept.iter().copied().find(|key| *key == Place || of_contact(key));
+            let first = swept
+                .iter()
+                .copied()
+                .find(|key| *key == Place || of_contact(key));
             first.map_or(Ok(()), |key| Err(SimulateError::Zero { key, other: Gamma }))?;
         }
-        if swept.contains(&FrequencyRatio) && gives(Beta) && zero(Beta, Some(self.excitation.beta)) {
+        if swept.contains(&FrequencyRatio) && gives(Beta) && zero(Beta, Some(self.excitation.beta))
+        {
             return Err(SimulateError::Zero {
                 key: FrequencyRatio,
                 other: Beta,
@@ -288,7 +322,10 @@ impl Problem {
             ("[sphere] modulus", self.sphere.modulus.is_some()),
             ("[barrier] poisson", self.barrier.poisson.is_some()),
         ];
-        if let (true, Some((key, _))) = (swept.contains(&Modulus), of_two.into_iter().find(|(_, given)| *given)) {
+        if let (true, Some((key, _))) = (
+            swept.contains(&Modulus),
+            of_two.into_iter().find(|(_, given)| *given),
+        ) {
             return Err(SimulateError::ModulusOfTwo(key));
         }
         let without_loss = self.contact.restitution == Some(1.0) && !swept.contains(&Restitution);
@@ -305,7 +342,12 @@ impl Problem {
             Length | Gravity => !in_si && !at_speed_in_si && zero(Lambda, self.contact.lambda),
             _ => false,
         };
-        match swept.iter().copied().find(without_say).filter(|_| gives(Gamma)) {
+        match swept
+            .iter()
+            .copied()
+            .find(without_say)
+            .filter(|_| gives(Gamma))
+        {
             Some(key) => Err(SimulateError::NoEffect { key, other: Gamma }),
             None => Ok(()),
         }
@@ -325,7 +367,10 @@ impl Problem {
     }
 
     /// Refuses a key that another one leaves nothing to say, or that says nothing alone.
-    pub(super) fn check_pairs(&self, gives: impl Fn(Parameter) -> bool) -> Result<(), SimulateError> {
+    pub(super) fn check_pairs(
+        &self,
+        gives: impl Fn(Parameter) -> bool,
+    ) -> Result<(), SimulateError> {
         let (key, other) = (Parameter::Amplitude, Parameter::Start);
         if gives(key) && gives(other) {
             return Err(SimulateError::NoEffect { key, other });
@@ -380,7 +425,9 @@ mod tests {
 
     #[test]
     fn lambda_is_a_material_and_mu_follows_from_it() {
-        let asked = asked("[contact]\ngamma = 1e6\nlambda = 0.1\n[design]\nlength = 0.25\ngravity = 9.0").unwrap();
+        let asked =
+            asked("[contact]\ngamma = 1e6\nlambda = 0.1\n[design]\nlength = 0.25\ngravity = 9.0")
+                .unwrap();
         assert!((asked.case.motion().unwrap().0.mu / 1.5e5 - 1.0).abs() < 1e-15);
     }
 
@@ -390,13 +437,17 @@ mod tests {
         assert_eq!(start(""), Start::default());
         assert_eq!(
             start("[pendulum]\nstart = 0.1\nspeed = -2"),
-            Start { x: 0.1, velocity: -2.0 }
+            Start {
+                x: 0.1,
+                velocity: -2.0
+            }
         );
     }
 
     #[test]
     fn what_is_swept_counts_as_given() {
-        let sweep = |text: &str, swept: &[Parameter]| text.parse::<Problem>().unwrap().simulate(swept);
+        let sweep =
+            |text: &str, swept: &[Parameter]| text.parse::<Problem>().unwrap().simulate(swept);
         assert!(sweep("", &[Parameter::Mass]).is_ok());
         for (text, swept) in [
             ("[contact]\ngamma = 1e6", &[Parameter::Mass][..]),
@@ -408,7 +459,10 @@ mod tests {
             ("[contact]\nlambda = 0.1", &[Parameter::AtSpeed]),
             ("[damping]\nviscous = 0.1", &[Parameter::Zeta]),
             ("[damping]\nalpha = 0.1", &[Parameter::Torque]),
-            ("[contact]\ngamma = 1e6\nmu_over_gamma = 0.1", &[Parameter::Length]),
+            (
+                "[contact]\ngamma = 1e6\nmu_over_gamma = 0.1",
+                &[Parameter::Length],
+            ),
         ] {
             assert!(sweep(text, swept).is_err(), "{text} {swept:?}");
         }

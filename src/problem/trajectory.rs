@@ -51,7 +51,8 @@ impl TrajectoryFileError {
 }
 
 impl Problem {
-    /// The motion of the equation or the mechanism of the file, from rest at zero: its start and its values are still to be given.
+    /// The motion of the equation or the mechanism of the file, from rest at zero: its start and
+    /// its values are still to be given.
     ///
     /// # Errors
     /// [`TrajectoryFileError`].

@@ -1,4 +1,5 @@
-//! An audit: a table of verdicts, and of every claim that is not simply reproduced what speaks for its verdict.
+//! An audit: a table of verdicts, and of every claim that is not simply reproduced what speaks for
+//! its verdict.
 
 use super::{Block, Document, Heading};
 use crate::audit::{ABSENT, Audit, Computed, Finding, Lack, Stated, Tried, Verdict};
@@ -28,7 +29,9 @@ pub fn audit(audit: &Audit) -> Document<'_> {
         }
     }
     for finding in &audit.findings {
-        let plain = finding.verdict == Verdict::Reproduced && finding.claim.note.is_none() && finding.is_as_expected();
+        let plain = finding.verdict == Verdict::Reproduced
+            && finding.claim.note.is_none()
+            && finding.is_as_expected();
         if !plain {
             sections.push(story(finding));
         }
@@ -54,7 +57,11 @@ fn summary(audit: &Audit) -> Vec<Block<'_>> {
     };
     vec![
         Block::Heading(title),
-        Block::Note(format!("{}: {}", claims(audit.findings.len()), counts.join(", "))),
+        Block::Note(format!(
+            "{}: {}",
+            claims(audit.findings.len()),
+            counts.join(", ")
+        )),
         Block::Note(expected),
     ]
 }
@@ -145,7 +152,8 @@ fn demanded(finding: &Finding) -> Option<String> {
     ))
 }
 
-/// What is computed for an entry, with two digits more than are printed; in the unit of what is printed; nothing where it lacks something.
+/// What is computed for an entry, with two digits more than are printed; in the unit of what is
+/// printed; nothing where it lacks something.
 pub(crate) fn entry(finding: &Finding, tried: &Tried, index: usize) -> Option<String> {
     let alike = |number: f64| match finding.claim.entries.get(index).map(|entry| &entry.stated) {
         Some(Stated::Number(printed)) => printed.alike(number, 6),

@@ -8,11 +8,12 @@ use super::driven::slow_equations;
 use super::solution::law_blocks;
 use super::{Block, Document};
 use crate::certificate::{
-    Beyond, Certificate, Certified, DampedCertificate, Enclosure, Errors, JudgedFormula, Range, Validity, coordinate,
+    Beyond, Certificate, Certified, DampedCertificate, Enclosure, Errors, JudgedFormula, Range,
+    Validity, coordinate,
 };
 use crate::decimal::{
-    as_typed, exact_decimal, neighbours, not_above_typed, plain_decimal, plain_fraction, rounded_fraction, rounded_up,
-    significant_fraction,
+    as_typed, exact_decimal, neighbours, not_above_typed, plain_decimal, plain_fraction,
+    rounded_fraction, rounded_up, significant_fraction,
 };
 use crate::derivation::Line;
 use crate::exact::bound::Bound;
@@ -112,7 +113,8 @@ impl AnyCertificate<'_> {
         }
     }
 
-    /// A statement that the theorem leaves open: with odd harmonics alone it says nothing of motions that have others.
+    /// A statement that the theorem leaves open: with odd harmonics alone it says nothing of
+    /// motions that have others.
     fn left_open(&self) -> Option<&'static str> {
         match self {
             Self::Damped(certificate) if certificate.odd => {
@@ -132,7 +134,11 @@ impl AnyCertificate<'_> {
 
     fn block(&self) -> String {
         let (odd, highest, harmonics) = match self {
-            Self::Motion(certificate) => (certificate.odd, certificate.highest, certificate.coefficients.len()),
+            Self::Motion(certificate) => (
+                certificate.odd,
+                certificate.highest,
+                certificate.coefficients.len(),
+            ),
             Self::Damped(certificate) => (
                 certificate.odd,
                 certificate.highest,
@@ -150,7 +156,8 @@ impl AnyCertificate<'_> {
 /// A certificate to be reported.
 #[derive(Clone, Copy, Debug)]
 pub struct CertificateReport<'a> {
-    /// The answer that is judged and its values, where they are known: a document has the numbers alone.
+    /// The answer that is judged and its values, where they are known: a document has the numbers
+    /// alone.
     pub question: Option<(&'a Solution, &'a Values)>,
     /// The certificate.
     pub certificate: AnyCertificate<'a>,
@@ -158,7 +165,8 @@ pub struct CertificateReport<'a> {
     pub certified: &'a Certified,
     /// How far the formula is proved to hold, where that was asked for.
     pub validity: Option<&'a Validity>,
-    /// The error of the frequency, of a driven motion that of the amplitude, up to which the formula passes.
+    /// The error of the frequency, of a driven motion that of the amplitude, up to which the
+    /// formula passes.
     pub tolerance: f64,
 }
 
@@ -166,7 +174,9 @@ impl CertificateReport<'_> {
     /// Whether the formula is proved to be within the tolerance; `None` where no formula is judged.
     pub fn verdict(&self) -> Option<Verdict> {
         let errors = self.certified.formula.as_ref()?;
-        Some(Verdict::of(errors.relative.upper <= not_above_typed(self.tolerance)))
+        Some(Verdict::of(
+            errors.relative.upper <= not_above_typed(self.tolerance),
+        ))
     }
 }
 
@@ -206,18 +216,26 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
         ],
         None => {
             let left = certificate.left_side();
-            vec![vec![Block::Line(Cow::Owned(Line::equation(left, Expr::zero())))]]
+            vec![vec![Block::Line(Cow::Owned(Line::equation(
+                left,
+                Expr::zero(),
+            )))]]
         }
     };
     let letter = report
         .question
         .map_or(coordinate(), |(solution, _)| solution.coordinate());
     let values = report.question.map(|(_, at)| {
-        let values: Vec<String> = at.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        let values: Vec<String> = at
+            .iter()
+            .map(|(name, value)| format!("{name} = {value}"))
+            .collect();
         values.join(", ")
     });
     let mut blocks = vec![Block::Heading("Proved".to_owned())];
-    let at = values.filter(|values| !values.is_empty()).map(|values| ("at", values));
+    let at = values
+        .filter(|values| !values.is_empty())
+        .map(|values| ("at", values));
     let mut facts: Vec<(&str, String)> = at.into_iter().collect();
     facts.push(("motion", certificate.motion(letter)));
     match (&report.certified.amplitude, certificate.harmonic()) {
@@ -243,7 +261,10 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
     }
     match &report.certified.formula {
         Some(errors) => facts.extend(of_formula(errors, report)),
-        None => facts.push(("formula", "none is judged: the proof is of the motion alone".to_owned())),
+        None => facts.push((
+            "formula",
+            "none is judged: the proof is of the motion alone".to_owned(),
+        )),
     }
     blocks.push(Block::Facts(facts));
     sections.push(blocks);
@@ -267,7 +288,11 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
                 ("block", certificate.block()),
             ]
             .into_iter()
-            .chain(certificate.left_open().map(|words| ("left open", words.to_owned())))
+            .chain(
+                certificate
+                    .left_open()
+                    .map(|words| ("left open", words.to_owned())),
+            )
             .collect(),
         ),
     ]);
@@ -282,7 +307,10 @@ fn of_range(validity: &Validity, tolerance: f64) -> Vec<(&'static str, String)> 
         false => value.to_string(),
     };
     // What is not proved is not said: six digits, the last one towards the inside of the range.
-    let inside = [&neighbours(&validity.from, 6)[1], &neighbours(&validity.to, 6)[0]];
+    let inside = [
+        &neighbours(&validity.from, 6)[1],
+        &neighbours(&validity.to, 6)[0],
+    ];
     let [from, to] = match inside[0] <= inside[1] {
         true => inside.map(|end| significant_fraction(end, 6)),
         false => [&validity.from, &validity.to].map(ToString::to_string),
@@ -290,7 +318,10 @@ fn of_range(validity: &Validity, tolerance: f64) -> Vec<(&'static str, String)> 
     let within = percent(tolerance);
     let beyond = match &validity.beyond {
         Beyond::Asked => None,
-        Beyond::Further(place) => Some(format!("omega is off by more at A = {}, proved", amplitude(place))),
+        Beyond::Further(place) => Some(format!(
+            "omega is off by more at A = {}, proved",
+            amplitude(place)
+        )),
         Beyond::Open(place) => Some(format!(
             "at A = {} omega is neither proved to be within nor beyond",
             amplitude(place)
@@ -298,7 +329,10 @@ fn of_range(validity: &Validity, tolerance: f64) -> Vec<(&'static str, String)> 
         Beyond::Unproved(place, reason) => Some(format!("at A = {}: {reason}", amplitude(place))),
         Beyond::Stopped => Some("stopped before the end".to_owned()),
     };
-    let proved = format!("omega within {within} % for every A from {} to {}", from, to);
+    let proved = format!(
+        "omega within {within} % for every A from {} to {}",
+        from, to
+    );
     let proved = match validity.intervals {
         0 => "omega is not proved to be within the tolerance at the first amplitude".to_owned(),
         _ => proved,
@@ -315,13 +349,20 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
     let letter = report
         .question
         .map_or(coordinate(), |(solution, _)| solution.coordinate());
-    let formula = report.certificate.formula().filter(|_| report.question.is_none());
-    let formula = formula.map(|formula| numbers_of(formula, report)).unwrap_or_default();
+    let formula = report
+        .certificate
+        .formula()
+        .filter(|_| report.question.is_none());
+    let formula = formula
+        .map(|formula| numbers_of(formula, report))
+        .unwrap_or_default();
     let copies = match report.certified.copies {
         1 => None,
         copies => Some((
             "compared with",
-            format!("the nearest of {copies} motions that the symmetries of the equation make of X"),
+            format!(
+                "the nearest of {copies} motions that the symmetries of the equation make of X"
+            ),
         )),
     };
     let within = percent(report.tolerance);
@@ -332,7 +373,9 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
     };
     let verdict = match report.verdict() {
         Some(Verdict::Pass) => format!("pass ({what} within {within} %, proved)"),
-        _ if errors.relative.lower > report.tolerance => format!("fail ({what} beyond {within} %, proved)"),
+        _ if errors.relative.lower > report.tolerance => {
+            format!("fail ({what} beyond {within} %, proved)")
+        }
         _ => format!("fail ({what} is not proved to be within {within} %)"),
     };
     let verdict = ("verdict", verdict);
@@ -345,9 +388,15 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
             verdict,
         ],
         None => vec![
-            ("error of the formula's omega", between(errors.frequency, "")),
+            (
+                "error of the formula's omega",
+                between(errors.frequency, ""),
+            ),
             ("relative error", between_percent(errors.relative)),
-            ("largest deviation at one phase", between(errors.deviation, "")),
+            (
+                "largest deviation at one phase",
+                between(errors.deviation, ""),
+            ),
             (
                 "deviation in time",
                 format!(
@@ -361,7 +410,8 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
     formula.into_iter().chain(copies).chain(facts).collect()
 }
 
-/// The formula of a file: its law where that has been read and held against the numbers, and the numbers, which are what is judged.
+/// The formula of a file: its law where that has been read and held against the numbers, and the
+/// numbers, which are what is judged.
 fn numbers_of(formula: &JudgedFormula, report: &CertificateReport) -> Vec<(&'static str, String)> {
     let values: Vec<String> = formula
         .values
@@ -376,7 +426,10 @@ fn numbers_of(formula: &JudgedFormula, report: &CertificateReport) -> Vec<(&'sta
     let law = report.certified.law_is_held.then_some(("formula", law));
     let bits = report.certificate.bits();
     let number = |units: &Integer| Rational::new(units.clone(), Integer::from(1) << bits);
-    let omega = report.certified.formula.filter(|errors| errors.amplitude.is_none());
+    let omega = report
+        .certified
+        .formula
+        .filter(|errors| errors.amplitude.is_none());
     let omega = omega.map(|_| {
         let omega = significant_fraction(&rounded_fraction(&number(&formula.frequency), 12), 12);
         ("omega of the formula", omega)
@@ -405,8 +458,14 @@ fn displacement(units: [&[Integer]; 2], number: impl Fn(&Integer) -> Rational) -
     }
     let mut sizes: Vec<Rational> = waves.iter().map(|(.., value)| value.abs()).collect();
     sizes.sort_by(|one, other| other.cmp(one));
-    let smallest = sizes.get(MOST - 1).or(sizes.last()).cloned().unwrap_or_default();
-    let (shown, others): (Vec<_>, Vec<_>) = waves.into_iter().partition(|(.., value)| value.abs() >= smallest);
+    let smallest = sizes
+        .get(MOST - 1)
+        .or(sizes.last())
+        .cloned()
+        .unwrap_or_default();
+    let (shown, others): (Vec<_>, Vec<_>) = waves
+        .into_iter()
+        .partition(|(.., value)| value.abs() >= smallest);
     let term = |(k, name, value): &(usize, &str, Rational)| {
         let size = significant_fraction(&rounded_fraction(&value.abs(), 6), 6);
         let wave = match k {
@@ -437,7 +496,8 @@ fn displacement(units: [&[Integer]; 2], number: impl Fn(&Integer) -> Rational) -
 /// Shows the words of a file that nothing was held against.
 fn words_of_file<'a>(report: &CertificateReport) -> Option<Vec<Block<'a>>> {
     let formula = report.certificate.formula()?;
-    let is_unread = report.question.is_none() && !report.certified.law_is_held && !formula.law.is_empty();
+    let is_unread =
+        report.question.is_none() && !report.certified.law_is_held && !formula.law.is_empty();
     is_unread.then(|| {
         vec![
             Block::Heading("Words of the file, which nothing was held against".to_owned()),
@@ -501,7 +561,10 @@ fn between_exactly([lower, upper]: [Option<Rational>; 2], unit: &str) -> String 
     const DIGITS: [usize; 2] = [6, 4];
     let lower = lower.unwrap_or_default();
     let Some(upper) = upper else {
-        return format!("at least {}{unit}", significant_fraction(&neighbours(&lower, 4)[0], 4));
+        return format!(
+            "at least {}{unit}",
+            significant_fraction(&neighbours(&lower, 4)[0], 4)
+        );
     };
     if upper.is_zero() {
         return "none".to_owned();
@@ -510,7 +573,10 @@ fn between_exactly([lower, upper]: [Option<Rational>; 2], unit: &str) -> String 
     let is_small = upper < Rational::new(1.into(), 1_000_000_000.into());
     let agree = rounded_fraction(&lower, DIGITS[0]) == rounded_fraction(&upper, DIGITS[0]);
     let digits = DIGITS[usize::from(!agree)];
-    let [below, above] = [&neighbours(&lower, digits)[0], &neighbours(&upper, digits)[1]];
+    let [below, above] = [
+        &neighbours(&lower, digits)[0],
+        &neighbours(&upper, digits)[1],
+    ];
     let text = |end: &Rational| format!("{}{unit}", significant_fraction(end, digits));
     match below == above {
         true => text(above),

@@ -3,8 +3,8 @@
 use super::{Block, Document, MethodRow};
 use crate::verify::comparison::{Comparison, Row};
 
-/// The document of a comparison: the truth, the table, why some rows have no frequency, who does not apply, where the true
-/// motion is periodic.
+/// The document of a comparison: the truth, the table, why some rows have no frequency, who does
+/// not apply, where the true motion is periodic.
 ///
 /// ```
 /// use lindstedt::{Oscillator, verify::comparison::compare};
@@ -20,7 +20,9 @@ pub fn comparison(comparison: &Comparison) -> Document<'_> {
     let truth = Block::Truth {
         equation: &comparison.equation,
         at: &comparison.at,
-        frequency: comparison.true_frequency.ok_or_else(|| reason().unwrap_or_default()),
+        frequency: comparison
+            .true_frequency
+            .ok_or_else(|| reason().unwrap_or_default()),
     };
     let methods = Block::Methods {
         rows: comparison.rows.iter().map(method_row).collect(),
@@ -50,7 +52,11 @@ pub fn comparison(comparison: &Comparison) -> Document<'_> {
     }
     let answer = comparison.rows.first().map(|row| &row.solution);
     let convention = answer.map(|answer| answer.amplitude.in_words(answer.coordinate()));
-    let over = match comparison.rows.iter().any(|row| row.solution.slow().is_some()) {
+    let over = match comparison
+        .rows
+        .iter()
+        .any(|row| row.solution.slow().is_some())
+    {
         true => "all of that time, of the amplitude at the start",
         false => "one period, of the amplitude",
     };

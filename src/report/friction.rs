@@ -1,4 +1,5 @@
-//! Equation (6) beside Coulomb's law: Table 1 of the paper, the pi of its digits, and a swing near rest.
+//! Equation (6) beside Coulomb's law: Table 1 of the paper, the pi of its digits, and a swing near
+//! rest.
 
 use super::{Block, Document, Heading};
 use crate::audit::paper::{Table, TableRow};
@@ -189,7 +190,11 @@ fn stop(alpha: f64, near_rest: &NearRest) -> Vec<Block<'static>> {
         ("time", decimal(stop.t)),
         (
             "place",
-            format!("{}   after {} half swings", decimal(stop.x), near_rest.half_swings),
+            format!(
+                "{}   after {} half swings",
+                decimal(stop.x),
+                near_rest.half_swings
+            ),
         ),
         (
             "sin of it",
@@ -230,13 +235,18 @@ fn creep(alpha: f64, creep: &Creep) -> Vec<Block<'static>> {
         ),
         (
             "rate of the simulation",
-            creep.rate.map_or("none: it is at rest there".to_owned(), decimal),
+            creep
+                .rate
+                .map_or("none: it is at rest there".to_owned(), decimal),
         ),
     ];
     if let Some(rate) = creep.rate_overdamped {
         entries.insert(
             1,
-            ("rate without inertia", format!("{}   pi/(200*alpha)", decimal(rate))),
+            (
+                "rate without inertia",
+                format!("{}   pi/(200*alpha)", decimal(rate)),
+            ),
         );
     }
     let mut head = vec![
@@ -285,7 +295,10 @@ fn rest_times(near_rest: &NearRest) -> Vec<Block<'static>> {
         ));
     }
     vec![
-        Block::Heading("Rest time (10 % of the amplitude) on the paper's damper, with this friction alone".to_owned()),
+        Block::Heading(
+            "Rest time (10 % of the amplitude) on the paper's damper, with this friction alone"
+                .to_owned(),
+        ),
         Block::Facts(entries),
     ]
 }

@@ -1,4 +1,5 @@
-//! An impact: what was asked, each reading of the three phases with the law of its swing, and the numbers beside Runge-Kutta.
+//! An impact: what was asked, each reading of the three phases with the law of its swing, and the
+//! numbers beside Runge-Kutta.
 
 use super::solution::law_blocks;
 use super::{Block, Document};
@@ -7,8 +8,8 @@ use crate::decimal::{decimal, significant};
 use crate::impact::contact::ContactLaw;
 use crate::impact::contact::power_law::duration_factor;
 use crate::impact::{
-    Attempt, Column, ContactLoss, DerivedContact, Flight, Form, Impact, Letters, Modulus, Quantity, Reading, Setup,
-    SiImpact, Side, YieldCheck,
+    Attempt, Column, ContactLoss, DerivedContact, Flight, Form, Impact, Letters, Modulus, Quantity,
+    Reading, Setup, SiImpact, Side, YieldCheck,
 };
 use crate::solution::law::Shown;
 use crate::solution::{AmplitudeConvention, Solution};
@@ -26,7 +27,10 @@ use crate::symbol::Symbol;
 /// ```
 pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
     let mut sections = vec![
-        vec![Block::QuestionAsTyped(&impact.equation), Block::Heading(start(impact))],
+        vec![
+            Block::QuestionAsTyped(&impact.equation),
+            Block::Heading(start(impact)),
+        ],
         asked(
             &impact.setup,
             impact.letters,
@@ -34,21 +38,28 @@ pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
             impact.damping,
         ),
     ];
-    sections.extend(impact.free_swing.as_ref().map(|law| free_swing(impact, law)));
+    sections.extend(
+        impact
+            .free_swing
+            .as_ref()
+            .map(|law| free_swing(impact, law)),
+    );
     for column in &impact.columns {
         sections.push(match (column.reading, &impact.flight) {
             (Reading::Derived, Some(flight)) => derived(impact, column, flight),
             _ => papers(impact, column),
         });
     }
-    sections.extend(
-        impact
-            .no_paper
-            .as_ref()
-            .map(|reason| vec![Block::Heading(format!("The paper's reading does not apply: {reason}"))]),
-    );
+    sections.extend(impact.no_paper.as_ref().map(|reason| {
+        vec![Block::Heading(format!(
+            "The paper's reading does not apply: {reason}"
+        ))]
+    }));
     if impact.flight.is_none() {
-        let tried = impact.tried.iter().map(|attempt| Block::Detail(attempted(attempt)));
+        let tried = impact
+            .tried
+            .iter()
+            .map(|attempt| Block::Detail(attempted(attempt)));
         let heading = Block::Heading("No derived motion".to_owned());
         sections.push(std::iter::once(heading).chain(tried).collect());
     }
@@ -92,7 +103,9 @@ fn start(impact: &Impact) -> String {
              clock starts at its turning point {x} = {start}"
         );
     }
-    format!("{x}(0) = {start}, {x}'(0) = 0: released from rest, towards a barrier{side} at {barrier}")
+    format!(
+        "{x}(0) = {start}, {x}'(0) = 0: released from rest, towards a barrier{side} at {barrier}"
+    )
 }
 
 pub(super) fn asked(
@@ -101,20 +114,38 @@ pub(super) fn asked(
     [equilibrium, turning_point]: [f64; 2],
     damping: f64,
 ) -> Vec<Block<'_>> {
-    let value = |name: Symbol, value, source| Block::Value { name, value, source };
+    let value = |name: Symbol, value, source| Block::Value {
+        name,
+        value,
+        source,
+    };
     let mut blocks = Vec::new();
     if is_minus_amplitude(setup, equilibrium) {
-        blocks.push(value(AmplitudeConvention::Initial.symbol(), -turning_point, None));
+        blocks.push(value(
+            AmplitudeConvention::Initial.symbol(),
+            -turning_point,
+            None,
+        ));
     }
     blocks.push(value(letters.barrier, setup.barrier, None));
     let gamma = letters.stiffness;
-    if setup.force.as_ref().is_none_or(|force| force.contains(gamma)) {
-        blocks.push(value(gamma, setup.stiffness, Some(setup.stiffness_source.as_str())));
+    if setup
+        .force
+        .as_ref()
+        .is_none_or(|force| force.contains(gamma))
+    {
+        blocks.push(value(
+            gamma,
+            setup.stiffness,
+            Some(setup.stiffness_source.as_str()),
+        ));
     }
     blocks.extend(setup.loss.map(|loss| {
         let source = match loss {
             ContactLoss::Damping(_) => "given, in units of the equation",
-            ContactLoss::Restitution(_) => "for the restitution asked for, at the speed of the touch",
+            ContactLoss::Restitution(_) => {
+                "for the restitution asked for, at the speed of the touch"
+            }
         };
         value(letters.damping, damping, Some(source))
     }));
@@ -135,7 +166,10 @@ fn free_swing<'a>(impact: &Impact, law: &'a Solution) -> Vec<Block<'a>> {
         law.order,
         law.small_parameter
     );
-    let mut blocks = vec![Block::Heading(heading), Block::Detail(law.equation.to_string())];
+    let mut blocks = vec![
+        Block::Heading(heading),
+        Block::Detail(law.equation.to_string()),
+    ];
     blocks.extend(first_law(law));
     blocks.extend(
         impact
@@ -145,7 +179,8 @@ fn free_swing<'a>(impact: &Impact, law: &'a Solution) -> Vec<Block<'a>> {
     blocks
 }
 
-/// The law in a line, omega^2 where there are two; a balance or an integral stays with `lindstedt derive`.
+/// The law in a line, omega^2 where there are two; a balance or an integral stays with
+/// `lindstedt derive`.
 fn first_law(solution: &Solution) -> Vec<Block<'_>> {
     match solution.law.shown().into_iter().next() {
         None | Some(Shown::System(_) | Shown::Quadrature(_)) => vec![],
@@ -165,8 +200,14 @@ fn omega<'a>(frequency: f64, symbol: &str, amplitude: f64) -> Block<'a> {
 fn papers<'a>(impact: &Impact, column: &'a Column) -> Vec<Block<'a>> {
     let setup = &impact.setup;
     let words = match column.reading {
-        Reading::Paper => "The paper's way: every join continuous, contact speed from the one-term motion".to_owned(),
-        _ => format!("With the contact speed from the energy, v = {}", energy_speed(impact)),
+        Reading::Paper => {
+            "The paper's way: every join continuous, contact speed from the one-term motion"
+                .to_owned()
+        }
+        _ => format!(
+            "With the contact speed from the energy, v = {}",
+            energy_speed(impact)
+        ),
     };
     let mut blocks = vec![Block::Reading {
         reading: column.reading,
@@ -182,7 +223,9 @@ fn papers<'a>(impact: &Impact, column: &'a Column) -> Vec<Block<'a>> {
     blocks.extend(phases(impact, column));
     if column.phases.velocity_jump != 0.0 {
         let jump = decimal(column.phases.velocity_jump);
-        blocks.push(Block::Detail(format!("the velocity jumps by {jump} at either join")));
+        blocks.push(Block::Detail(format!(
+            "the velocity jumps by {jump} at either join"
+        )));
     }
     blocks
 }
@@ -197,7 +240,8 @@ fn energy_speed(impact: &Impact) -> String {
 }
 
 fn phases<'a>(impact: &Impact, column: &'a Column) -> impl Iterator<Item = Block<'a>> {
-    let (letters, release, is_lossy) = (impact.letters, release(impact), impact.setup.loss.is_some());
+    let (letters, release, is_lossy) =
+        (impact.letters, release(impact), impact.setup.loss.is_some());
     column.phases.phases.iter().map(move |phase| Block::Phase {
         phase,
         letters,
@@ -216,23 +260,37 @@ fn derived<'a>(impact: &Impact, column: &'a Column, flight: &'a Flight) -> Vec<B
         words: format!("Derived, with all harmonics: {}", solution.title()),
     }];
     let setup = &impact.setup;
-    let passes = |attempt: &Attempt| attempt.error.as_ref().is_ok_and(|error| *error <= setup.tolerance);
+    let passes = |attempt: &Attempt| {
+        attempt
+            .error
+            .as_ref()
+            .is_ok_and(|error| *error <= setup.tolerance)
+    };
     let [it, that, none] = match impact.contact_is_exact() {
         true => ["it", "that", "none"],
         false => ["its approach", "whose approach", "no approach"],
     };
-    let chosen = match (setup.order.is_some() || setup.degrees.is_some(), impact.tried.last()) {
+    let chosen = match (
+        setup.order.is_some() || setup.degrees.is_some(),
+        impact.tried.last(),
+    ) {
         (true, _) | (_, None) => None,
         (false, Some(last)) if passes(last) => Some(match impact.tried.len() {
             1 => format!("the first that was tried, and {it} passes"),
             count => format!("the first of {count} tried {that} passes"),
         }),
-        (false, Some(_)) => Some(format!("the closest of {} tried; {none} passes", impact.tried.len())),
+        (false, Some(_)) => Some(format!(
+            "the closest of {} tried; {none} passes",
+            impact.tried.len()
+        )),
     };
     blocks.extend(chosen.map(Block::Detail));
     let x = solution.coordinate();
     if flight.is_turned {
-        blocks.push(Block::Detail(format!("{}   (the equation of -{x})", solution.equation)));
+        blocks.push(Block::Detail(format!(
+            "{}   (the equation of -{x})",
+            solution.equation
+        )));
     }
     blocks.extend(first_law(solution));
     blocks.push(omega(
@@ -274,7 +332,9 @@ fn law_of_contact<'a>(impact: &Impact, contact: &DerivedContact) -> Vec<Block<'a
             };
             let factor = contact.exponent().map(|exponent| {
                 let (m, factor) = (decimal(exponent + 1.0), decimal(duration_factor(exponent)));
-                format!("  T = (2/m) sqrt(pi) Gamma(1/m)/Gamma(1/m + 1/2) D/v = {factor} D/v, m = {m}")
+                format!(
+                    "  T = (2/m) sqrt(pi) Gamma(1/m)/Gamma(1/m + 1/2) D/v = {factor} D/v, m = {m}"
+                )
             });
             let mut lines = vec![
                 format!("the contact is by {law}; with s the time since the touch"),
@@ -283,7 +343,8 @@ fn law_of_contact<'a>(impact: &Impact, contact: &DerivedContact) -> Vec<Block<'a
             match contact.law {
                 ContactLaw::PowerLaw => lines.extend(factor),
                 ContactLaw::CorrectedPowerLaw => lines.extend([
-                    "  Y the motion of the law power-law between depths 0 and 1 and times 0 and 1,".to_owned(),
+                    "  Y the motion of the law power-law between depths 0 and 1 and times 0 and 1,"
+                        .to_owned(),
                     format!("  and T = {}", decimal(contact.duration)),
                 ]),
                 _ => {}
@@ -302,7 +363,8 @@ fn law_of_contact<'a>(impact: &Impact, contact: &DerivedContact) -> Vec<Block<'a
             let (stiffness, exponent) = (decimal(contact.stiffness), decimal(contact.exponent));
             let damping = impact.letters.damping;
             vec![
-                "the contact is by Hunt and Crossley, the force of the swing left out of it:".to_owned(),
+                "the contact is by Hunt and Crossley, the force of the swing left out of it:"
+                    .to_owned(),
                 format!("  d'' = -{stiffness} d^{exponent} (1 + {damping} d')"),
                 format!(
                     "  G(-{damping} e v) = G({damping} v), G(z) = z - ln(1 + z), {damping} v = {}",
@@ -388,7 +450,11 @@ fn judged(impact: &Impact, tolerance: f64) -> Vec<Block<'_>> {
                 .iter()
                 .map(|column| column.deviation.total / amplitude)
                 .collect(),
-            shapes: impact.columns.iter().map(|column| impact.deviations(column)).collect(),
+            shapes: impact
+                .columns
+                .iter()
+                .map(|column| impact.deviations(column))
+                .collect(),
         },
         Block::Detail(format!(
             "Runge-Kutta keeps the energy{} to {drift:e} of the kinetic energy at touch",
@@ -399,7 +465,11 @@ fn judged(impact: &Impact, tolerance: f64) -> Vec<Block<'_>> {
             }
         )),
         Block::Verdicts {
-            verdicts: columns.iter().copied().zip(impact.verdicts(tolerance)).collect(),
+            verdicts: columns
+                .iter()
+                .copied()
+                .zip(impact.verdicts(tolerance))
+                .collect(),
             tolerance,
         },
     ];
@@ -412,12 +482,17 @@ fn judged(impact: &Impact, tolerance: f64) -> Vec<Block<'_>> {
     }
     for (index, &reading) in columns.iter().enumerate() {
         let shortcomings = impact.shortcomings(index, tolerance).into_iter();
-        blocks.extend(shortcomings.map(|(errors, cause)| Block::Shortcoming { reading, errors, cause }));
+        blocks.extend(shortcomings.map(|(errors, cause)| Block::Shortcoming {
+            reading,
+            errors,
+            cause,
+        }));
     }
     blocks
 }
 
-/// The units with their numbers, every quantity in them, and what they say of the bodies and of the paper.
+/// The units with their numbers, every quantity in them, and what they say of the bodies and of the
+/// paper.
 fn in_si_units<'a>(impact: &Impact, si: &SiImpact, tolerance: f64) -> Vec<Block<'a>> {
     let (sign, inside) = match impact.setup.side {
         Side::Right => ('+', "x - xc"),
@@ -432,7 +507,11 @@ fn in_si_units<'a>(impact: &Impact, si: &SiImpact, tolerance: f64) -> Vec<Block<
         "In SI units: m L^2 x'' + m g L sin(x) {sign} k L (L ({inside}))^(3/2){damped} H({inside}) = 0"
     ))];
     blocks.extend(formulas(impact, si));
-    let mut rows: Vec<(Quantity, &str)> = si.rows().into_iter().map(|(row, unit)| (row.clone(), unit)).collect();
+    let mut rows: Vec<(Quantity, &str)> = si
+        .rows()
+        .into_iter()
+        .map(|(row, unit)| (row.clone(), unit))
+        .collect();
     let over_the_printed = paper::over_contact_time(si);
     rows.push((over_the_printed.clone(), ""));
     blocks.push(Block::SiQuantities {
@@ -459,7 +538,11 @@ fn in_si_units<'a>(impact: &Impact, si: &SiImpact, tolerance: f64) -> Vec<Block<
     };
     blocks.push(Block::Detail(peak.to_owned()));
     blocks.push(Block::Note(printed(impact, &over_the_printed, tolerance)));
-    blocks.extend(si.yield_checks().iter().map(|check| Block::Note(yielding(check))));
+    blocks.extend(
+        si.yield_checks()
+            .iter()
+            .map(|check| Block::Note(yielding(check))),
+    );
     blocks
 }
 
@@ -491,7 +574,11 @@ fn formulas<'a>(impact: &Impact, si: &SiImpact) -> Vec<Block<'a>> {
     );
     if let Some(modulus) = units.modulus {
         let (bodies, formula, words) = match modulus {
-            Modulus::BarrierAlone(_) => (vec![], None, "the modulus of the barrier alone, equation (3)"),
+            Modulus::BarrierAlone(_) => (
+                vec![],
+                None,
+                "the modulus of the barrier alone, equation (3)",
+            ),
             Modulus::RigidSphere(barrier) => (
                 vec![
                     ("E1", barrier.modulus, "Pa", "the barrier"),
@@ -530,10 +617,28 @@ fn formulas<'a>(impact: &Impact, si: &SiImpact) -> Vec<Block<'a>> {
             "N/m^(3/2)",
             "the stiffness of the contact",
         ),
-        value("T", Some("sqrt(L/g)"), units.time(), "s", "the unit of time"),
-        value("V", Some("sqrt(g*L)"), units.speed(), "m/s", "the unit of speed"),
+        value(
+            "T",
+            Some("sqrt(L/g)"),
+            units.time(),
+            "s",
+            "the unit of time",
+        ),
+        value(
+            "V",
+            Some("sqrt(g*L)"),
+            units.speed(),
+            "m/s",
+            "the unit of speed",
+        ),
         value("gamma", of_gamma, impact.setup.stiffness, "", source),
-        value("beta", Some("(Ae/L)*(Omega/omega)^2"), 0.0, "", "the pivot is at rest"),
+        value(
+            "beta",
+            Some("(Ae/L)*(Omega/omega)^2"),
+            0.0,
+            "",
+            "the pivot is at rest",
+        ),
     ]);
     blocks
 }

@@ -1,14 +1,15 @@
-//! A study of materials: what was asked, the first contact of each barrier, its way to rest, and what holding something else fixed
-//! changes. The sentences follow from the numbers.
+//! A study of materials: what was asked, the first contact of each barrier, its way to rest, and
+//! what holding something else fixed changes. The sentences follow from the numbers.
 
 use super::{Block, Document, Heading};
 use crate::decimal::{decimal, significant};
 use crate::impact::{
-    ContactDamping, Dissipation, HeldFixed, Integrator, MaterialRow, MaterialStudy, Model, Parameter, REST_FRACTION,
-    YieldCheck,
+    ContactDamping, Dissipation, HeldFixed, Integrator, MaterialRow, MaterialStudy, Model,
+    Parameter, REST_FRACTION, YieldCheck,
 };
 
-/// Below this part of the rest time materials rest at the same time, for what an engineer decides by it.
+/// Below this part of the rest time materials rest at the same time, for what an engineer decides
+/// by it.
 const SAME: f64 = 0.01;
 
 /// Energies that are listed of one material; JSON and tables of comma-separated values have all.
@@ -37,7 +38,12 @@ pub fn materials(study: &MaterialStudy) -> Document<'_> {
     if !study.held_fixed.is_empty() {
         sections.push(held_fixed(study));
     }
-    sections.push(material_sentences(study).into_iter().map(Block::Sentence).collect());
+    sections.push(
+        material_sentences(study)
+            .into_iter()
+            .map(Block::Sentence)
+            .collect(),
+    );
     Document { sections }
 }
 
@@ -67,7 +73,9 @@ fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
         words,
     };
     let mut blocks = vec![
-        Block::Heading(format!("{count} barrier{plural} for one pendulum, equation (7):")),
+        Block::Heading(format!(
+            "{count} barrier{plural} for one pendulum, equation (7):"
+        )),
         Block::Note(format!(
             "x''{viscous}{dry} + sin(x) + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc) = 0, x(0) = {}, x'(0) = {}",
             decimal(study.start.x),
@@ -82,7 +90,13 @@ fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
         si("R", None, design.radius, "m", "the radius of the sphere"),
         si("L", None, design.length, "m", "the length"),
         si("g", None, design.gravity, "m/s^2", "gravity"),
-        si("T", Some("sqrt(L/g)"), study.units.time(), "s", "the unit of time"),
+        si(
+            "T",
+            Some("sqrt(L/g)"),
+            study.units.time(),
+            "s",
+            "the unit of time",
+        ),
     ]);
     let default = ", by default: the paper prints none";
     let said = |parameter| if is_default(parameter) { default } else { "" };
@@ -120,7 +134,9 @@ fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
         decimal(100.0 * REST_FRACTION)
     )));
     let amplitude = study.question.case.amplitude;
-    if study.question.integrator == Integrator::Chain && study.model.alpha > CHAIN_FRICTION * amplitude {
+    if study.question.integrator == Integrator::Chain
+        && study.model.alpha > CHAIN_FRICTION * amplitude
+    {
         blocks.push(Block::Note(format!(
             "alpha = {} is more than {} of the amplitude: rest times by closed forms may be several percent off, without --chain they are not",
             decimal(study.model.alpha),
@@ -130,7 +146,8 @@ fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
     blocks
 }
 
-/// alpha in parts of the amplitude up to which the rest times of a chain are within a percent; `docs/chain.md`.
+/// alpha in parts of the amplitude up to which the rest times of a chain are within a percent;
+/// `docs/chain.md`.
 const CHAIN_FRICTION: f64 = 0.02;
 
 /// The form that is given, with its number: `held fixed: zeta = 0.02`.
@@ -156,12 +173,20 @@ fn at_speed(dissipation: &Dissipation) -> String {
 /// `lambda = 0.122347 s/m`
 pub(super) fn in_words(damping: ContactDamping) -> String {
     let form = damping.form();
-    let text = format!("{} = {} {}", form.name(), decimal(damping.value()), form.unit());
+    let text = format!(
+        "{} = {} {}",
+        form.name(),
+        decimal(damping.value()),
+        form.unit()
+    );
     text.trim_end().to_owned()
 }
 
 pub(super) fn head(columns: &[(&'static str, &'static str)]) -> Vec<Heading> {
-    columns.iter().map(|&(text, latex)| Heading { text, latex }).collect()
+    columns
+        .iter()
+        .map(|&(text, latex)| Heading { text, latex })
+        .collect()
 }
 
 /// A number, or a stroke where there is none.
@@ -325,7 +350,8 @@ fn held_fixed(study: &MaterialStudy) -> Vec<Block<'_>> {
         ]
     };
     let has_own = study.rows.iter().any(|row| row.material.damping.is_some());
-    let aside = has_own.then(|| Block::Note("dampings of their own are left aside in this table".to_owned()));
+    let aside = has_own
+        .then(|| Block::Note("dampings of their own are left aside in this table".to_owned()));
     let blocks = vec![
         Block::Heading(format!(
             "What is held fixed decides: the same damping at E = {} Pa, held fixed in each of its forms",
@@ -365,7 +391,11 @@ pub fn material_sentences(study: &MaterialStudy) -> Vec<String> {
     let groups: [(&[Parameter], bool); 2] = [
         (&[Parameter::Mu, Parameter::ContactDamping], true),
         (
-            &[Parameter::MuOverGamma, Parameter::Lambda, Parameter::Restitution],
+            &[
+                Parameter::MuOverGamma,
+                Parameter::Lambda,
+                Parameter::Restitution,
+            ],
             false,
         ),
     ];
@@ -390,7 +420,11 @@ fn what_it_does(study: &MaterialStudy, held: &[&HeldFixed], ratio_changes: bool)
         (last, names) => format!("{} or {last}", names.join(", ")),
     };
     let first = held.first()?;
-    let Some(spread) = held.iter().map(|held| held.spread()).collect::<Option<Vec<f64>>>() else {
+    let Some(spread) = held
+        .iter()
+        .map(|held| held.spread())
+        .collect::<Option<Vec<f64>>>()
+    else {
         return Some(format!(
             "With {names} held fixed not every material rests within the run."
         ));
@@ -415,7 +449,10 @@ fn what_it_does(study: &MaterialStudy, held: &[&HeldFixed], ratio_changes: bool)
     };
     let why = match ratio_changes {
         true => format!(": {ratios}{restitutions}"),
-        false => ": mu/gamma and with it the restitution at a given speed are those of every modulus".to_owned(),
+        false => {
+            ": mu/gamma and with it the restitution at a given speed are those of every modulus"
+                .to_owned()
+        }
     };
     let apart = percent(spread);
     Some(match (spread < SAME, study.order(first)) {
@@ -429,7 +466,9 @@ fn what_it_does(study: &MaterialStudy, held: &[&HeldFixed], ratio_changes: bool)
             "With {names} held fixed the rest times are {apart} apart, and the harder the barrier the sooner the rest{why}."
         ),
         (false, None) => {
-            format!("With {names} held fixed the rest times are {apart} apart, in no order of the modulus{why}.")
+            format!(
+                "With {names} held fixed the rest times are {apart} apart, in no order of the modulus{why}."
+            )
         }
     })
 }
@@ -471,7 +510,11 @@ fn baseline(study: &MaterialStudy) -> Option<String> {
         let most = times.iter().copied().fold(0.0, f64::max);
         match (most - least) / least < 5e-4 {
             true => format!("at {}", significant(least, 4)),
-            false => format!("between {} and {}", significant(least, 4), significant(most, 4)),
+            false => format!(
+                "between {} and {}",
+                significant(least, 4),
+                significant(most, 4)
+            ),
         }
     };
     let rows = study.rows.iter();
@@ -480,7 +523,10 @@ fn baseline(study: &MaterialStudy) -> Option<String> {
         .map(|row| row.course.rest_time)
         .collect::<Result<_, _>>()
         .ok()?;
-    let lossless: Vec<f64> = rows.map(|row| row.lossless).collect::<Result<_, _>>().ok()?;
+    let lossless: Vec<f64> = rows
+        .map(|row| row.lossless)
+        .collect::<Result<_, _>>()
+        .ok()?;
     Some(format!(
         "Without a barrier the swing rests at {}, with these barriers without loss {}, with their loss {}.",
         significant(none, 4),

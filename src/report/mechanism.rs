@@ -1,4 +1,5 @@
-//! A mechanism: its energies, its equations of motion, where it rests, how it swings there, and on how many numbers it depends.
+//! A mechanism: its energies, its equations of motion, where it rests, how it swings there, and on
+//! how many numbers it depends.
 
 use std::borrow::Cow;
 
@@ -59,7 +60,9 @@ fn energies(study: &MechanismStudy) -> Vec<Block<'_>> {
 fn equations(study: &MechanismStudy) -> Vec<Block<'_>> {
     let equations = &study.equations;
     let several = if equations.left.len() > 1 { "s" } else { "" };
-    let mut blocks = vec![Block::Heading(format!("Equation{several} of motion, by Lagrange"))];
+    let mut blocks = vec![Block::Heading(format!(
+        "Equation{several} of motion, by Lagrange"
+    ))];
     for left in &equations.left {
         blocks.push(equation(left.clone(), Expr::zero()));
     }
@@ -81,12 +84,25 @@ fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
         true => "No place of rest was found".to_owned(),
         false => "Places of rest, and small swings about them; others are not ruled out".to_owned(),
     })];
-    let has = |function: Function| study.equations.rest.iter().any(|rest| rest.contains_function(function));
-    let driven = study.equations.rest.iter().any(|rest| rest.contains(Symbol::new("t")));
-    let vanishes = !study.rests.is_empty() && study.rests.iter().all(|rest| rest.drive == Drive::Vanishes);
+    let has = |function: Function| {
+        study
+            .equations
+            .rest
+            .iter()
+            .any(|rest| rest.contains_function(function))
+    };
+    let driven = study
+        .equations
+        .rest
+        .iter()
+        .any(|rest| rest.contains(Symbol::new("t")));
+    let vanishes =
+        !study.rests.is_empty() && study.rests.iter().all(|rest| rest.drive == Drive::Vanishes);
     let changes = study.rests.iter().any(|rest| rest.modes.changing.is_some());
     if vanishes && changes && !has(Function::Step) {
-        blocks.push(Block::Note("at rest there with the terms in t, too".to_owned()));
+        blocks.push(Block::Note(
+            "at rest there with the terms in t, too".to_owned(),
+        ));
     } else if vanishes && !has(Function::Step) {
         blocks.push(Block::Note(
             "at rest there with the terms in t, too; the swings are those without them, which may hold what falls and shake loose what rests"
@@ -114,11 +130,9 @@ fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
             blocks.push(Block::Note(format!("  omega^2 = {square}{why}")));
         }
         match &rest.numbers {
-            Some(Ok(modes)) => blocks.extend(
-                modes
-                    .iter()
-                    .map(|mode| Block::Note(format!("  {}", mode_in_words(mode, coordinates, unpulled)))),
-            ),
+            Some(Ok(modes)) => blocks.extend(modes.iter().map(|mode| {
+                Block::Note(format!("  {}", mode_in_words(mode, coordinates, unpulled)))
+            })),
             Some(Err(error)) => blocks.push(Block::Note(format!("  {error}"))),
             None => blocks.extend(rest.modes.changing.clone().map(|changing| {
                 let why = NoModes::Changing(changing);
@@ -145,9 +159,14 @@ fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
         blocks.push(Block::Note(format!("at {}{wanting}", values.join(", "))));
     }
     let has_numbers = study.rests.iter().any(|rest| rest.numbers.is_some()) || changes;
-    if coordinates.len() > 1 && !study.rests.is_empty() && !has_numbers && study.question.values.is_empty() {
+    if coordinates.len() > 1
+        && !study.rests.is_empty()
+        && !has_numbers
+        && study.question.values.is_empty()
+    {
         blocks.push(Block::Note(
-            "with values for every parameter come the frequencies and shapes of the modes".to_owned(),
+            "with values for every parameter come the frequencies and shapes of the modes"
+                .to_owned(),
         ));
     }
     blocks
@@ -158,7 +177,11 @@ fn place(rest: &RestStudy, coordinates: &[Symbol]) -> String {
         Place::At(value) => format!("{name} = {value}"),
         Place::Anywhere => format!("any {name}"),
     };
-    let places: Vec<String> = coordinates.iter().zip(&rest.rest.places).map(place).collect();
+    let places: Vec<String> = coordinates
+        .iter()
+        .zip(&rest.rest.places)
+        .map(place)
+        .collect();
     let condition = rest.rest.condition.as_ref();
     let condition = condition.map_or(String::new(), |cosine| format!(", where |{cosine}| < 1"));
     let zero: Vec<String> = rest
@@ -176,11 +199,18 @@ fn place(rest: &RestStudy, coordinates: &[Symbol]) -> String {
 
 /// A mode; `unpulled` is what to say of one that neither swings nor grows.
 fn mode_in_words(mode: &Mode, coordinates: &[Symbol], unpulled: &str) -> String {
-    let shape = mode.shape.as_ref().filter(|shape| shape.len() > 1).map(|shape| {
-        let parts: Vec<String> = coordinates.iter().map(|name| name.name().to_owned()).collect();
-        let numbers: Vec<String> = shape.iter().map(|part| decimal(*part)).collect();
-        format!(", {} = {}", parts.join(" : "), numbers.join(" : "))
-    });
+    let shape = mode
+        .shape
+        .as_ref()
+        .filter(|shape| shape.len() > 1)
+        .map(|shape| {
+            let parts: Vec<String> = coordinates
+                .iter()
+                .map(|name| name.name().to_owned())
+                .collect();
+            let numbers: Vec<String> = shape.iter().map(|part| decimal(*part)).collect();
+            format!(", {} = {}", parts.join(" : "), numbers.join(" : "))
+        });
     let shape = shape.unwrap_or_default();
     match (mode.frequency > 0.0, mode.growth) {
         (true, 0.0) => format!("swings with omega = {}{shape}", decimal(mode.frequency)),
@@ -191,7 +221,9 @@ fn mode_in_words(mode: &Mode, coordinates: &[Symbol], unpulled: &str) -> String 
             decimal(growth)
         ),
         (false, 0.0) => format!("{unpulled}{shape}"),
-        (false, growth) if growth > 0.0 => format!("unstable: leaves like exp({} t){shape}", decimal(growth)),
+        (false, growth) if growth > 0.0 => {
+            format!("unstable: leaves like exp({} t){shape}", decimal(growth))
+        }
         (false, growth) => format!("creeps back like exp({} t){shape}", decimal(growth)),
     }
 }
@@ -227,21 +259,34 @@ fn dimensionless<'a>(groups: &'a Groups, study: &'a MechanismStudy) -> Vec<Block
                 (0, _) => "no number is left, all such motions are one".to_owned(),
                 (1, _) => "the motion depends on one number".to_owned(),
                 (most, found) if most == found => format!("the motion depends on {found} numbers"),
-                (most, found) => format!("at most {most} numbers are left, and the motion depends on {found}"),
+                (most, found) =>
+                    format!("at most {most} numbers are left, and the motion depends on {found}"),
             },
             names.join(", ")
         )),
     ];
     for combination in &groups.combinations {
         let line = Line::equation(combination.name, combination.meaning.clone());
-        blocks.push(Block::Line(Cow::Owned(line.because("counts as one parameter"))));
+        blocks.push(Block::Line(Cow::Owned(
+            line.because("counts as one parameter"),
+        )));
     }
-    if let Ok(square) = Expr::divide(&Expr::one(), &groups.time).and_then(|rate| rate.integer_power(2)) {
-        let name = match study.question.mechanism.parameters().contains(&Symbol::new("omega")) {
+    if let Ok(square) =
+        Expr::divide(&Expr::one(), &groups.time).and_then(|rate| rate.integer_power(2))
+    {
+        let name = match study
+            .question
+            .mechanism
+            .parameters()
+            .contains(&Symbol::new("omega"))
+        {
             true => String::new(),
             false => format!(", 1/omega with omega^2 = {square}"),
         };
-        blocks.push(Block::Note(format!("time in units of {}{name}", groups.time)));
+        blocks.push(Block::Note(format!(
+            "time in units of {}{name}",
+            groups.time
+        )));
     }
     for (coordinate, length) in coordinates
         .iter()
@@ -262,7 +307,9 @@ fn dimensionless<'a>(groups: &'a Groups, study: &'a MechanismStudy) -> Vec<Block
     for group in &groups.groups {
         let line = match group.definition.as_symbol() == Some(group.name) {
             true => Line::words(format!("{}, a number as it is given", group.name)),
-            false => Line::equation(group.name, group.definition.clone()).because(group.meaning.clone()),
+            false => {
+                Line::equation(group.name, group.definition.clone()).because(group.meaning.clone())
+            }
         };
         blocks.push(Block::Line(Cow::Owned(line)));
     }
@@ -291,12 +338,17 @@ pub fn paper_equations(findings: &[Finding]) -> Vec<Block<'_>> {
             Some(false) => "does not follow as printed",
             None => "is put in",
         };
-        (finding.equation.to_owned(), format!("{verdict}: {}", finding.words))
+        (
+            finding.equation.to_owned(),
+            format!("{verdict}: {}", finding.words),
+        )
     };
     let printed = findings
         .iter()
         .map(|finding| Block::Detail(format!("{} {}", finding.equation, finding.printed)));
-    let mut blocks = vec![Block::Heading("The paper's equations, in these letters".to_owned())];
+    let mut blocks = vec![Block::Heading(
+        "The paper's equations, in these letters".to_owned(),
+    )];
     blocks.extend(printed);
     blocks.push(Block::Entries {
         heading: "What becomes of them",

@@ -1,8 +1,11 @@
-//! What a report says, before any format says how: one file for each kind of result, which makes a [`Document`] of it.
+//! What a report says, before any format says how: one file for each kind of result, which makes a
+//! [`Document`] of it.
 //!
-//! In come results: a [`Solution`] with its [`Verification`], a [`Comparison`](crate::verify::comparison::Comparison), an
-//! [`Impact`](crate::impact::Impact), a [`FrictionStudy`](crate::impact::friction::FrictionStudy). Out go documents, sections of blocks; every format of `export` knows each kind of block
-//! and nothing of the results. Which law is shown, what is left out and what stands beside what is chosen here, once.
+//! In come results: a [`Solution`] with its [`Verification`], a
+//! [`Comparison`](crate::verify::comparison::Comparison), an [`Impact`](crate::impact::Impact), a
+//! [`FrictionStudy`](crate::impact::friction::FrictionStudy). Out go documents, sections of blocks;
+//! every format of `export` knows each kind of block and nothing of the results. Which law is
+//! shown, what is left out and what stands beside what is chosen here, once.
 
 mod audit;
 mod certificate;
@@ -23,7 +26,9 @@ mod trajectory;
 
 pub use audit::audit;
 #[cfg(feature = "json")]
-pub(crate) use audit::{computed as audit_computed, entry as audit_entry, printed as audit_printed};
+pub(crate) use audit::{
+    computed as audit_computed, entry as audit_entry, printed as audit_printed,
+};
 pub use certificate::{AnyCertificate, CertificateReport, certificate};
 pub use comparison::comparison;
 pub use friction::friction;
@@ -216,8 +221,8 @@ pub enum Block<'a> {
         rows: Vec<Quantity>,
         /// The largest deviation of each column over the amplitude, in real time.
         deviations: Vec<f64>,
-        /// The largest deviation of each column in approach, contact and return, each on its own clock: of the flights over the
-        /// amplitude, of the contact over the depth.
+        /// The largest deviation of each column in approach, contact and return, each on its own
+        /// clock: of the flights over the amplitude, of the contact over the depth.
         shapes: Vec<[f64; 3]>,
     },
     /// A table of every law of a contact.

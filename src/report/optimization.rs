@@ -1,5 +1,6 @@
-//! A search for the best damper: what was asked, the best design beside the paper's, how far the runs agree, what else finds as much, and what
-//! decides; or the front of several objectives. The sentences follow from the numbers.
+//! A search for the best damper: what was asked, the best design beside the paper's, how far the
+//! runs agree, what else finds as much, and what decides; or the front of several objectives. The
+//! sentences follow from the numbers.
 
 mod sentences;
 
@@ -38,7 +39,12 @@ pub fn optimization(study: &Study) -> Document<'_> {
         }
         _ => sections.push(front(study)),
     }
-    sections.push(optimization_sentences(study).into_iter().map(Block::Sentence).collect());
+    sections.push(
+        optimization_sentences(study)
+            .into_iter()
+            .map(Block::Sentence)
+            .collect(),
+    );
     Document { sections }
 }
 
@@ -58,7 +64,9 @@ fn column(objective: Objective) -> Heading {
 
 /// A value with its unit.
 fn with_unit(objective: Objective, value: f64) -> String {
-    format!("{} {}", decimal(value), objective.unit()).trim_end().to_owned()
+    format!("{} {}", decimal(value), objective.unit())
+        .trim_end()
+        .to_owned()
 }
 
 /// `length`, or `material` beyond the numbers.
@@ -76,7 +84,9 @@ fn value_of(study: &Study, design: &Design, index: usize) -> String {
 }
 
 fn material_of(study: &Study, design: &Design) -> String {
-    let material = design.material.and_then(|number| study.question.materials.get(number));
+    let material = design
+        .material
+        .and_then(|number| study.question.materials.get(number));
     material.map_or("-".to_owned(), |material| material.name.clone())
 }
 
@@ -96,7 +106,9 @@ fn asked(study: &Study) -> Vec<Block<'_>> {
         _ => "NSGA-II",
     };
     let mut blocks = vec![
-        Block::Heading(format!("The best damper by {runs} of {search}: the least of")),
+        Block::Heading(format!(
+            "The best damper by {runs} of {search}: the least of"
+        )),
         Block::Note(wishes.join("; ")),
     ];
     let Some(best) = study.best() else {
@@ -150,7 +162,10 @@ fn route(study: &Study) -> &'static str {
 
 /// The largest part by which closed forms are off for the best designs, judged again.
 fn closed_forms_off(study: &Study) -> f64 {
-    let finite = study.finalists.iter().filter(|finalist| finalist.values[0].is_finite());
+    let finite = study
+        .finalists
+        .iter()
+        .filter(|finalist| finalist.values[0].is_finite());
     let off = finite
         .filter(|finalist| finalist.by_chain[0] != finalist.values[0])
         .map(|finalist| (finalist.by_chain[0] / finalist.values[0] - 1.0).abs());
@@ -294,7 +309,10 @@ fn options(study: &Study) -> Vec<String> {
             Coding::Bits(bits) => format!("{bits} bits a number"),
         };
         let crossover = match crossover {
-            Crossover::Heuristic(ratio) => format!("heuristic crossover of ratio {} kept feasible", decimal(ratio)),
+            Crossover::Heuristic(ratio) => format!(
+                "heuristic crossover of ratio {} kept feasible",
+                decimal(ratio)
+            ),
             Crossover::Scattered => "scattered crossover".to_owned(),
             Crossover::OnePoint => "one-point crossover".to_owned(),
         };
@@ -303,17 +321,23 @@ fn options(study: &Study) -> Vec<String> {
             Mutation::BitFlips(rate) => format!("bit flips at {}", decimal(rate)),
         };
         let penalty = match penalty {
-            _ if question.constraints().is_empty() => "no constraint beyond the limits, so no penalty",
+            _ if question.constraints().is_empty() => {
+                "no constraint beyond the limits, so no penalty"
+            }
             Penalty::Death => "death penalty",
             Penalty::FeasibleFirst => "feasible designs first",
             Penalty::AugmentedLagrangian { .. } => "augmented Lagrangian",
         };
         let penalty = match question.genetic.penalty {
-            Penalty::AugmentedLagrangian { initial, factor } if !question.constraints().is_empty() => format!(
-                "{penalty} of initial penalty {} and factor {}",
-                decimal(initial),
-                decimal(factor)
-            ),
+            Penalty::AugmentedLagrangian { initial, factor }
+                if !question.constraints().is_empty() =>
+            {
+                format!(
+                    "{penalty} of initial penalty {} and factor {}",
+                    decimal(initial),
+                    decimal(factor)
+                )
+            }
             _ => penalty.to_owned(),
         };
         words.push(format!(
@@ -411,7 +435,10 @@ fn best_design(study: &Study) -> Vec<Block<'_>> {
             ]
         })
         .collect();
-    let papers = study.default_design.as_ref().map(|papers| quantities(study, papers));
+    let papers = study
+        .default_design
+        .as_ref()
+        .map(|papers| quantities(study, papers));
     for (index, (name, value)) in quantities(study, &best.design).into_iter().enumerate() {
         let other = papers.as_ref().and_then(|papers| papers.get(index));
         rows.push(vec![
@@ -424,7 +451,8 @@ fn best_design(study: &Study) -> Vec<Block<'_>> {
     }
     let mut blocks = vec![
         Block::Heading(
-            "The best design, and the paper's Table 5 under the same assumptions, both integrated".to_owned(),
+            "The best design, and the paper's Table 5 under the same assumptions, both integrated"
+                .to_owned(),
         ),
         Block::Table {
             head: head(&[
@@ -620,7 +648,9 @@ fn front(study: &Study) -> Vec<Block<'_>> {
     };
     let count = study.finalists.len();
     let shown: Vec<usize> = match count > LISTED {
-        true => (0..LISTED).map(|place| place * (count - 1) / (LISTED - 1)).collect(),
+        true => (0..LISTED)
+            .map(|place| place * (count - 1) / (LISTED - 1))
+            .collect(),
         false => (0..count).collect(),
     };
     let number = |value: &f64| cell(Some(*value).filter(|value| value.is_finite()));
@@ -639,7 +669,10 @@ fn front(study: &Study) -> Vec<Block<'_>> {
                 .into_iter()
                 .map(|index| {
                     let finalist = &study.finalists[index];
-                    row(finalist.values.iter().map(number).collect(), &finalist.design)
+                    row(
+                        finalist.values.iter().map(number).collect(),
+                        &finalist.design,
+                    )
                 })
                 .collect(),
         },

@@ -1,4 +1,5 @@
-//! The main mass with its damper: what it is, what happened, where the energy went, and what the damper is worth.
+//! The main mass with its damper: what it is, what happened, where the energy went, and what the
+//! damper is worth.
 
 use super::trajectory::{Doubt, TRUSTED};
 use super::{Block, Document, Heading};
@@ -204,7 +205,9 @@ fn rest_times<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
     let alone = |name: &str, alone: &Alone| {
         let words = match (alone.rest_time, alone.amplitude) {
             (Some(time), _) => [decimal(time), seconds(time)],
-            (None, Some(amplitude)) => [decimal(amplitude), decimal(amplitude * report.units.length)],
+            (None, Some(amplitude)) => {
+                [decimal(amplitude), decimal(amplitude * report.units.length)]
+            }
             (None, None) if alone.frequency == 0.0 => ["creeps".to_owned(), String::new()],
             (None, None) => ["none".to_owned(), String::new()],
         };
@@ -221,7 +224,11 @@ fn rest_times<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
             ]
         }
         (false, Ok(time)) => ["with its damper".to_owned(), decimal(time), seconds(time)],
-        (false, Err(_)) => ["with its damper".to_owned(), "none".to_owned(), String::new()],
+        (false, Err(_)) => [
+            "with its damper".to_owned(),
+            "none".to_owned(),
+            String::new(),
+        ],
     };
     let (heading, head) = match driven {
         true => (
@@ -289,7 +296,8 @@ impl PrimarySweepReport<'_> {
         grid_values(self.axes, row)
     }
 
-    /// Whether a force drives any of the motions: then their amplitudes in the long run are asked for, otherwise their rest times.
+    /// Whether a force drives any of the motions: then their amplitudes in the long run are asked
+    /// for, otherwise their rest times.
     pub fn is_driven(&self) -> bool {
         self.rows.iter().any(PrimaryRow::is_driven)
     }
@@ -320,8 +328,12 @@ pub fn primary_sweep<'a>(report: &PrimarySweepReport) -> Document<'a> {
         let (length, time, begun) = (units.length, units.time(), row.is_begun());
         let others = [row.others.locked, row.others.without];
         let results = match driven {
-            true => [begun.then_some(row.amplitude), others[0].amplitude, others[1].amplitude]
-                .map(|value| value.map(|value| value * length)),
+            true => [
+                begun.then_some(row.amplitude),
+                others[0].amplitude,
+                others[1].amplitude,
+            ]
+            .map(|value| value.map(|value| value * length)),
             false => [row.rest_time.ok(), others[0].rest_time, others[1].rest_time]
                 .map(|value| value.map(|value| value * time)),
         };
@@ -336,21 +348,39 @@ pub fn primary_sweep<'a>(report: &PrimarySweepReport) -> Document<'a> {
     };
     let names = report.parameters.iter().map(|parameter| parameter.name());
     let results = ["with its damper", "damper locked", "without", "impacts"];
-    let head = names.chain(results).map(|text| Heading { text, latex: text });
+    let head = names
+        .chain(results)
+        .map(|text| Heading { text, latex: text });
     let meanings = report.parameters.iter().map(|parameter| {
         let unit = parameter.unit();
         let comma = if unit.is_empty() { "" } else { ", " };
-        Block::Note(format!("{}: {}{comma}{unit}", parameter.name(), parameter.meaning()))
+        Block::Note(format!(
+            "{}: {}{comma}{unit}",
+            parameter.name(),
+            parameter.meaning()
+        ))
     });
     let heading = match driven {
-        true => "Amplitude of the main mass in the long run, m; impacts in the last quarter of the run",
-        false => "When the main mass has come to rest, s: its envelope is down to 10 %; impacts in the whole run",
+        true => {
+            "Amplitude of the main mass in the long run, m; impacts in the last quarter of the run"
+        }
+        false => {
+            "When the main mass has come to rest, s: its envelope is down to 10 %; impacts in the whole run"
+        }
     };
     let mut blocks = vec![Block::Heading(heading.to_owned())];
     blocks.extend(meanings);
     blocks.push(Block::Table {
         head: head.collect(),
-        rows: report.rows.iter().zip(report.units).enumerate().map(row).collect(),
+        rows: report
+            .rows
+            .iter()
+            .zip(report.units)
+            .enumerate()
+            .map(row)
+            .collect(),
     });
-    Document { sections: vec![blocks] }
+    Document {
+        sections: vec![blocks],
+    }
 }

@@ -1,4 +1,5 @@
-//! Steady states of an oscillator: branches with their stability, where they change, how far all is from the true motion.
+//! Steady states of an oscillator: branches with their stability, where they change, how far all is
+//! from the true motion.
 
 use std::borrow::Cow;
 
@@ -38,14 +39,22 @@ pub fn response(response: &Response) -> Document<'static> {
     sections.extend(changes(response));
     sections.extend(backbone(response));
     sections.push(judgement(response));
-    sections.extend(response.slow.as_ref().map(|slow| by_slow_equations(response, slow)));
+    sections.extend(
+        response
+            .slow
+            .as_ref()
+            .map(|slow| by_slow_equations(response, slow)),
+    );
     Document { sections }
 }
 
 fn question(response: &Response) -> Vec<Block<'static>> {
     let asked = &response.question;
     let equation = asked.oscillator.equation();
-    let mut blocks = vec![Block::Line(Cow::Owned(Line::equation(equation.left, equation.right)))];
+    let mut blocks = vec![Block::Line(Cow::Owned(Line::equation(
+        equation.left,
+        equation.right,
+    )))];
     blocks.extend(numbers(&asked.values).map(|(name, value)| Block::Value {
         name,
         value,
@@ -145,11 +154,14 @@ fn heads(names: &[&'static str]) -> Vec<Heading> {
         .collect()
 }
 
-/// The indices of the rows: the ends, equal steps between, and the points beside every change of stability.
+/// The indices of the rows: the ends, equal steps between, and the points beside every change of
+/// stability.
 fn rows(points: &[Point]) -> Vec<usize> {
     let count = points.len();
     let steps = ROWS.min(count).max(2) - 1;
-    let mut rows: Vec<usize> = (0..=steps).map(|step| step * (count.max(1) - 1) / steps).collect();
+    let mut rows: Vec<usize> = (0..=steps)
+        .map(|step| step * (count.max(1) - 1) / steps)
+        .collect();
     rows.dedup();
     rows
 }
@@ -176,7 +188,9 @@ fn branch(response: &Response, index: usize, branch: &Branch) -> Vec<Block<'stat
         let last = [
             stable(point.stable).to_owned(),
             largest.map_or("-".to_owned(), |largest| significant(largest, 4)),
-            point.error.map_or("-".to_owned(), |error| significant(error, 2)),
+            point
+                .error
+                .map_or("-".to_owned(), |error| significant(error, 2)),
         ];
         first.chain(place).chain(last).collect()
     };
@@ -191,10 +205,22 @@ fn branch(response: &Response, index: usize, branch: &Branch) -> Vec<Block<'stat
             "multiplier",
             "error",
         ],
-        false => &[name, "amplitude", "phase", "peak", "stable", "multiplier", "error"],
+        false => &[
+            name,
+            "amplitude",
+            "phase",
+            "peak",
+            "stable",
+            "multiplier",
+            "error",
+        ],
     };
     let mut blocks = vec![
-        Block::Heading(format!("branch {}: {}", index + 1, extent_in_words(response, branch))),
+        Block::Heading(format!(
+            "branch {}: {}",
+            index + 1,
+            extent_in_words(response, branch)
+        )),
         Block::Table {
             head: heads(columns),
             rows: rows(&branch.points).into_iter().map(row).collect(),
@@ -210,7 +236,10 @@ fn branch(response: &Response, index: usize, branch: &Branch) -> Vec<Block<'stat
         )));
     }
     blocks.extend(sticking(response, branch));
-    let ends = branch.ends.iter().zip([branch.points.first(), branch.points.last()]);
+    let ends = branch
+        .ends
+        .iter()
+        .zip([branch.points.first(), branch.points.last()]);
     let ends = ends.filter_map(|(end, point)| end_in_words(response, *end, point?));
     blocks.extend(ends.map(Block::Sentence));
     blocks
@@ -218,7 +247,11 @@ fn branch(response: &Response, index: usize, branch: &Branch) -> Vec<Block<'stat
 
 /// Why a branch ends at a point, where that is worth saying.
 fn end_in_words(response: &Response, end: BranchEnd, point: &Point) -> Option<String> {
-    let place = format!("{} = {}", response.question.parameter, significant(point.parameter, 4));
+    let place = format!(
+        "{} = {}",
+        response.question.parameter,
+        significant(point.parameter, 4)
+    );
     Some(match end {
         BranchEnd::Unbounded => format!("The amplitude grows without bound at {place}."),
         BranchEnd::Slow => format!(
@@ -226,18 +259,26 @@ fn end_in_words(response: &Response, end: BranchEnd, point: &Point) -> Option<St
              motion has more waves than are kept.",
             significant(std::f64::consts::TAU / point.frequency, 4)
         ),
-        BranchEnd::Held => format!("It comes to rest at {place}: beyond, friction bears what drives it."),
+        BranchEnd::Held => {
+            format!("It comes to rest at {place}: beyond, friction bears what drives it.")
+        }
         BranchEnd::Lost if response.jumps => format!(
             "It could not be followed beyond {place}: the motion begins to touch a jump of the force there, or the force has no value."
         ),
-        BranchEnd::Lost => format!("It could not be followed beyond {place}: the force has a jump or no value there."),
+        BranchEnd::Lost => format!(
+            "It could not be followed beyond {place}: the force has a jump or no value there."
+        ),
         BranchEnd::Harmonics => format!(
             "It was followed no farther than {place}: beyond, {} harmonics do not suffice, the last of them are a tenth of the motion or more.",
             response.harmonics
         ),
-        BranchEnd::Points => format!("It was followed no farther than {place}: it has too many points."),
+        BranchEnd::Points => {
+            format!("It was followed no farther than {place}: it has too many points.")
+        }
         BranchEnd::Interrupted => format!("It was followed no farther than {place}: interrupted."),
-        BranchEnd::Range | BranchEnd::Closed | BranchEnd::Crossing | BranchEnd::Rest => return None,
+        BranchEnd::Range | BranchEnd::Closed | BranchEnd::Crossing | BranchEnd::Rest => {
+            return None;
+        }
     })
 }
 
@@ -247,20 +288,30 @@ fn sticking(response: &Response, branch: &Branch) -> Option<Block<'static>> {
     const MOST: usize = 4;
     let name = response.question.parameter;
     let sticks = |point: &Point| point.stuck > 0.0;
-    let stretches = branch.points.chunk_by(|one, other| sticks(one) == sticks(other));
+    let stretches = branch
+        .points
+        .chunk_by(|one, other| sticks(one) == sticks(other));
     let stretches: Vec<String> = stretches
         .filter(|stretch| stretch.first().is_some_and(sticks))
         .map(|stretch| {
             let parameters = stretch.iter().map(|point| point.parameter);
             let low = parameters.clone().fold(f64::INFINITY, f64::min);
             let high = parameters.fold(f64::NEG_INFINITY, f64::max);
-            format!("from {name} = {} to {}", significant(low, 4), significant(high, 4))
+            format!(
+                "from {name} = {} to {}",
+                significant(low, 4),
+                significant(high, 4)
+            )
         })
         .collect();
     if stretches.is_empty() {
         return None;
     }
-    let longest = branch.points.iter().map(|point| point.stuck).fold(0.0, f64::max);
+    let longest = branch
+        .points
+        .iter()
+        .map(|point| point.stuck)
+        .fold(0.0, f64::max);
     let more = match stretches.len() > MOST {
         true => ", and elsewhere",
         false => "",
@@ -277,8 +328,14 @@ fn sticking(response: &Response, branch: &Branch) -> Option<Block<'static>> {
 fn extent_in_words(response: &Response, branch: &Branch) -> String {
     let points = &branch.points;
     let name = response.question.parameter;
-    let stable = points.iter().filter(|point| point.stable == Some(true)).count();
-    let low = points.iter().map(|point| point.parameter).fold(f64::INFINITY, f64::min);
+    let stable = points
+        .iter()
+        .filter(|point| point.stable == Some(true))
+        .count();
+    let low = points
+        .iter()
+        .map(|point| point.parameter)
+        .fold(f64::INFINITY, f64::min);
     let high = points
         .iter()
         .map(|point| point.parameter)
@@ -341,13 +398,18 @@ fn changes(response: &Response) -> Option<Vec<Block<'static>>> {
         rows: all.iter().take(MOST_BIFURCATIONS).map(row).collect(),
     });
     if all.len() > MOST_BIFURCATIONS {
-        blocks.push(Block::Note(format!("and {} more", all.len() - MOST_BIFURCATIONS)));
+        blocks.push(Block::Note(format!(
+            "and {} more",
+            all.len() - MOST_BIFURCATIONS
+        )));
     }
     let meaning = |kind: BifurcationKind| match kind {
         BifurcationKind::Fold if response.self_excited => "At a fold two cycles meet and vanish.",
         BifurcationKind::Fold => "At a fold the motion jumps to another branch.",
         BifurcationKind::BranchPoint => "At a branch point another branch crosses.",
-        BifurcationKind::PeriodDoubling => "At a period doubling motions of twice the period come off.",
+        BifurcationKind::PeriodDoubling => {
+            "At a period doubling motions of twice the period come off."
+        }
         BifurcationKind::NeimarkSacker => "At a Neimark-Sacker point a second frequency comes in.",
         BifurcationKind::Hopf => "At a Hopf point the motion is born from rest.",
         BifurcationKind::Centre => "At a centre motions of every amplitude repeat themselves.",
@@ -384,7 +446,9 @@ fn backbone(response: &Response) -> Option<Vec<Block<'static>>> {
         return None;
     }
     let name = response.question.parameter.name();
-    let mut blocks = vec![Block::Heading("backbone: the free motion without damping".to_owned())];
+    let mut blocks = vec![Block::Heading(
+        "backbone: the free motion without damping".to_owned(),
+    )];
     for curve in &response.backbone {
         let count = curve.len();
         let chosen = (0..FEW).map(|index| &curve[index * (count - 1) / (FEW - 1)]);
@@ -402,15 +466,24 @@ fn backbone(response: &Response) -> Option<Vec<Block<'static>>> {
 fn by_slow_equations(response: &Response, slow: &SlowResponse) -> Vec<Block<'static>> {
     let name = response.question.parameter.name();
     let solution = &slow.solution;
-    let mut blocks = vec![Block::Heading(format!("by slow equations: {}", solution.title()))];
+    let mut blocks = vec![Block::Heading(format!(
+        "by slow equations: {}",
+        solution.title()
+    ))];
     let line = |left: Expr, right: Expr| Block::Line(Cow::Owned(Line::equation(left, right)));
     if let Some(modulation) = &solution.modulation {
         let rate = |name: Symbol| Expr::from(name.derivative());
-        blocks.push(line(rate(modulation.amplitude), modulation.amplitude_rate.clone()));
+        blocks.push(line(
+            rate(modulation.amplitude),
+            modulation.amplitude_rate.clone(),
+        ));
         blocks.push(line(rate(modulation.phase), modulation.phase_rate.clone()));
     }
     let definitions = solution.definitions.iter();
-    blocks.extend(definitions.map(|definition| line(Expr::from(definition.symbol), definition.meaning.clone())));
+    blocks.extend(
+        definitions
+            .map(|definition| line(Expr::from(definition.symbol), definition.meaning.clone())),
+    );
     if let Some(relation) = solution
         .response
         .as_ref()
@@ -478,7 +551,11 @@ fn by_slow_equations(response: &Response, slow: &SlowResponse) -> Vec<Block<'sta
 
 fn judgement(response: &Response) -> Vec<Block<'static>> {
     let name = response.question.parameter.name();
-    let points: usize = response.branches.iter().map(|branch| branch.points.len()).sum();
+    let points: usize = response
+        .branches
+        .iter()
+        .map(|branch| branch.points.len())
+        .sum();
     let mut facts = vec![(
         "largest error",
         match response.error {
@@ -499,7 +576,10 @@ fn judgement(response: &Response) -> Vec<Block<'static>> {
     if response.unjudged > 0 {
         facts.push((
             "not judged",
-            format!("{} points: shooting found no true motion near", response.unjudged),
+            format!(
+                "{} points: shooting found no true motion near",
+                response.unjudged
+            ),
         ));
     }
     facts.push((
@@ -514,12 +594,21 @@ fn judgement(response: &Response) -> Vec<Block<'static>> {
         Block::Heading("judged against the true motion".to_owned()),
         Block::Facts(facts),
     ];
-    let mut periods: Vec<Option<usize>> = response.elsewhere.iter().map(|elsewhere| elsewhere.periods).collect();
+    let mut periods: Vec<Option<usize>> = response
+        .elsewhere
+        .iter()
+        .map(|elsewhere| elsewhere.periods)
+        .collect();
     periods.sort();
     periods.dedup();
     for count in periods {
-        let places = response.elsewhere.iter().filter(|elsewhere| elsewhere.periods == count);
-        let mut places: Vec<String> = places.map(|elsewhere| significant(elsewhere.parameter, 4)).collect();
+        let places = response
+            .elsewhere
+            .iter()
+            .filter(|elsewhere| elsewhere.periods == count);
+        let mut places: Vec<String> = places
+            .map(|elsewhere| significant(elsewhere.parameter, 4))
+            .collect();
         places.dedup();
         let places = places.join(", ");
         blocks.push(Block::Sentence(match count {

@@ -15,7 +15,8 @@ use crate::solution::{LeadingCycle, LimitCycle, Modulation, Solution, Sum, const
 use crate::symbol::{Symbol, fresh};
 use crate::verify::Verification;
 
-/// The document of a solution: equation, title, law, limit cycle, motion with definitions, validity, verdict.
+/// The document of a solution: equation, title, law, limit cycle, motion with definitions,
+/// validity, verdict.
 ///
 /// ```
 /// use lindstedt::{Options, Oscillator, solve};
@@ -26,7 +27,11 @@ use crate::verify::Verification;
 /// assert!(lindstedt::export::latex::document(&document).contains(r"\omega^{2}"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn solution<'a>(solution: &'a Solution, verification: Option<&'a Verification>, tolerance: f64) -> Document<'a> {
+pub fn solution<'a>(
+    solution: &'a Solution,
+    verification: Option<&'a Verification>,
+    tolerance: f64,
+) -> Document<'a> {
     if let Some(response) = &solution.response {
         return super::driven::driven(solution, response, verification, tolerance);
     }
@@ -37,7 +42,10 @@ pub fn solution<'a>(solution: &'a Solution, verification: Option<&'a Verificatio
     let shown = solution.law.shown();
     let laws = match solution.slow() {
         Some(slow) => slow_equations(solution, slow),
-        None => shown.into_iter().flat_map(|law| law_blocks(solution, law)).collect(),
+        None => shown
+            .into_iter()
+            .flat_map(|law| law_blocks(solution, law))
+            .collect(),
     };
     let mut sections = vec![vec![Block::Question(&solution.equation)], vec![title], laws];
     // Where the motion is left out, so is its amplitude.
@@ -58,7 +66,10 @@ pub fn solution<'a>(solution: &'a Solution, verification: Option<&'a Verificatio
     if let Some(slow) = solution.slow() {
         sections.extend(slow_motion(slow));
     } else if solution.limit_cycle.is_some() {
-        let slow = solution.modulation.as_ref().filter(|slow| slow.release.is_some());
+        let slow = solution
+            .modulation
+            .as_ref()
+            .filter(|slow| slow.release.is_some());
         sections.extend(slow.into_iter().flat_map(|slow| approach(solution, slow)));
     }
     let notes = solution.validity.iter().map(ToString::to_string);
@@ -66,7 +77,8 @@ pub fn solution<'a>(solution: &'a Solution, verification: Option<&'a Verificatio
     let notes = notes.map(Block::Note);
     let heading = Block::Heading("Validity".to_owned());
     sections.push(std::iter::once(heading).chain(notes).collect());
-    sections.extend(verification.map(|verification| vec![judged(solution, verification, tolerance)]));
+    sections
+        .extend(verification.map(|verification| vec![judged(solution, verification, tolerance)]));
     Document { sections }
 }
 
@@ -90,7 +102,10 @@ pub(super) fn law_blocks<'a>(solution: &'a Solution, law: Shown<'a>) -> Vec<Bloc
                 }]
             })
         }
-        Shown::Quadrature(lines) => lines.iter().map(|line| Block::Line(Cow::Borrowed(line))).collect(),
+        Shown::Quadrature(lines) => lines
+            .iter()
+            .map(|line| Block::Line(Cow::Borrowed(line)))
+            .collect(),
         Shown::System(system) => {
             let equations = system.equations.iter();
             let equations = equations.map(|right| Block::Equality {
@@ -110,18 +125,28 @@ const LONGEST: u64 = 2000;
 /// Digits of the coefficients of a closed form that are rounded themselves.
 const ROUNDED_DIGITS: usize = 15;
 
-/// A quotient of polynomials whose coefficients are rounded, or too long for eyes, in decimals; `None` for everything else.
+/// A quotient of polynomials whose coefficients are rounded, or too long for eyes, in decimals;
+/// `None` for everything else.
 fn in_decimals<'a>(solution: &Solution, value: &Expr, left: &Expr) -> Option<Vec<Block<'a>>> {
     solution.degrees?;
     let fraction = value.fraction();
-    let polynomial = |factors: Vec<Expr>| Expr::product(factors).to_polynomial(&mut |_| None).ok().flatten();
+    let polynomial = |factors: Vec<Expr>| {
+        Expr::product(factors)
+            .to_polynomial(&mut |_| None)
+            .ok()
+            .flatten()
+    };
     let above = polynomial(fraction.numerator)?;
     let below = polynomial(fraction.denominator)?;
     let longest = longest([&above, &below])?;
     if longest < LONGEST && !solution.numerical {
         return None;
     }
-    let digits = if solution.numerical { ROUNDED_DIGITS } else { 6 };
+    let digits = if solution.numerical {
+        ROUNDED_DIGITS
+    } else {
+        6
+    };
     let rounded = |name, polynomial: &Polynomial| rounded(solution, name, polynomial, digits);
     let remark = (!solution.numerical).then(|| rounded_to(longest));
     let first = below.coefficient(&Monomial::one());
@@ -130,7 +155,9 @@ fn in_decimals<'a>(solution: &Solution, value: &Expr, left: &Expr) -> Option<Vec
     } else {
         Rational::one()
     };
-    let over = |polynomial: &Polynomial, factor: &Rational| polynomial.map(|number| number * factor / &first);
+    let over = |polynomial: &Polynomial, factor: &Rational| {
+        polynomial.map(|number| number * factor / &first)
+    };
     let letters = ["P", "Q"].map(|letter| fresh(letter, &solution.names()));
     let quotient = Monomial::power_of(letters[0], 1).product(&Monomial::power_of(letters[1], -1));
     let quotient = Polynomial::term(quotient, Rational::one());
@@ -154,7 +181,12 @@ fn longest<'a>(polynomials: impl IntoIterator<Item = &'a Polynomial>) -> Option<
 }
 
 /// A polynomial with long coefficients.
-fn rounded<'a>(solution: &Solution, name: Symbol, polynomial: &Polynomial, digits: usize) -> Block<'a> {
+fn rounded<'a>(
+    solution: &Solution,
+    name: Symbol,
+    polynomial: &Polynomial,
+    digits: usize,
+) -> Block<'a> {
     let sum = Sum::new(polynomial, true, |monomial| solution.order_of(monomial));
     Block::Law {
         left: Expr::from(name),
@@ -175,7 +207,9 @@ fn definitions(solution: &Solution) -> Vec<Block<'_>> {
     let mut blocks = vec![];
     let mut digits = None;
     for definition in &solution.definitions {
-        let polynomial = solution.degrees.and_then(|_| polynomial(&definition.meaning));
+        let polynomial = solution
+            .degrees
+            .and_then(|_| polynomial(&definition.meaning));
         let long = polynomial.and_then(|own| Some((longest([&own])?, own)));
         blocks.push(match long.filter(|(bits, _)| *bits >= LONGEST) {
             Some((bits, polynomial)) => {
@@ -191,7 +225,10 @@ fn definitions(solution: &Solution) -> Vec<Block<'_>> {
 
 /// The slow equations: `a' = ...`, `psi' = ...`.
 fn slow_equations<'a>(solution: &'a Solution, slow: &'a Modulation) -> Vec<Block<'a>> {
-    let rates = [(slow.amplitude, &slow.amplitude_rate), (slow.phase, &slow.phase_rate)];
+    let rates = [
+        (slow.amplitude, &slow.amplitude_rate),
+        (slow.phase, &slow.phase_rate),
+    ];
     let polynomials = rates.map(|(_, right)| right.to_polynomial(&mut |_| None).ok().flatten());
     // One form for both.
     let both = polynomials.iter().all(Option::is_some);
@@ -214,7 +251,11 @@ fn slow_motion(slow: &Modulation) -> Vec<Vec<Block<'_>>> {
     if !slow.steady.is_empty() {
         let line = |cycle: &LeadingCycle| {
             let amplitude = constant_in_words(&cycle.amplitude);
-            Block::Remark(format!("{} = {amplitude} stays: {}", slow.amplitude, cycle.stability()))
+            Block::Remark(format!(
+                "{} = {amplitude} stays: {}",
+                slow.amplitude,
+                cycle.stability()
+            ))
         };
         sections.push(slow.steady.iter().map(line).collect());
     }
@@ -222,7 +263,8 @@ fn slow_motion(slow: &Modulation) -> Vec<Vec<Block<'_>>> {
     sections
 }
 
-/// Towards a limit cycle or away from it: the slow equations, and the motion from its start in closed form.
+/// Towards a limit cycle or away from it: the slow equations, and the motion from its start in
+/// closed form.
 fn approach<'a>(solution: &'a Solution, slow: &'a Modulation) -> Vec<Vec<Block<'a>>> {
     let mut blocks = vec![Block::Heading("Off the cycle".to_owned())];
     blocks.extend(slow_equations(solution, slow));
@@ -299,7 +341,11 @@ fn other_cycles(cycle: &LimitCycle, solution: &Solution) -> Vec<String> {
             }
         };
         let exact = constant_in_words(amplitude);
-        format!("{own} {}  {symbol} = {exact}{value}, {}", k + 1, each.stability())
+        format!(
+            "{own} {}  {symbol} = {exact}{value}, {}",
+            k + 1,
+            each.stability()
+        )
     };
     std::iter::once(head)
         .chain(cycle.cycles.iter().enumerate().map(line))

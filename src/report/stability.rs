@@ -1,4 +1,5 @@
-//! The transition curves of a linear equation with periodic coefficients, and how they stand beside Floquet's multipliers.
+//! The transition curves of a linear equation with periodic coefficients, and how they stand beside
+//! Floquet's multipliers.
 
 use std::borrow::Cow;
 
@@ -103,7 +104,9 @@ fn validity<'a>(curves: &TransitionCurves) -> Vec<Block<'a>> {
         )),
     ];
     if let Some(name) = curves.time_scale {
-        blocks.push(Block::Note(format!("derived in the dimensionless time tau = {name}*t")));
+        blocks.push(Block::Note(format!(
+            "derived in the dimensionless time tau = {name}*t"
+        )));
     }
     for pair in curves.curves.windows(2) {
         let same = pair[0].tongue == pair[1].tongue && pair[0].middle == pair[1].middle;
@@ -134,8 +137,15 @@ fn signed_percent(error: f64) -> String {
     }
 }
 
-fn verdicts<'a>(report: &StabilityReport<'a>, at: &'a Values, judged: &[JudgedCurve]) -> Vec<Block<'a>> {
-    let values: Vec<String> = at.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+fn verdicts<'a>(
+    report: &StabilityReport<'a>,
+    at: &'a Values,
+    judged: &[JudgedCurve],
+) -> Vec<Block<'a>> {
+    let values: Vec<String> = at
+        .iter()
+        .map(|(name, value)| format!("{name} = {value}"))
+        .collect();
     let head = [
         ("curve", "curve"),
         ("formula", "formula"),
@@ -167,8 +177,10 @@ fn verdicts<'a>(report: &StabilityReport<'a>, at: &'a Values, judged: &[JudgedCu
         Block::Note(format!(
             "true: by Hill's determinant, confirmed by Floquet's multipliers of the integrated motion; none: {}",
             match report.curves.unknown.power() {
-                power if power % 2 == 0 && report.curves.time_scale.is_some() =>
-                    format!("no real {} lies on the curve there", report.curves.unknown.symbol()),
+                power if power % 2 == 0 && report.curves.time_scale.is_some() => format!(
+                    "no real {} lies on the curve there",
+                    report.curves.unknown.symbol()
+                ),
                 _ => "the tongue does not reach so far".to_owned(),
             }
         )),

@@ -8,7 +8,9 @@ use crate::derivation::Line;
 use crate::expr::Expr;
 use crate::symbol::Symbol;
 use crate::system::{End, Integrator};
-use crate::trajectory::{Course, Crossing, DISPLACEMENT, Section, SweptMotion, Trajectory, in_words};
+use crate::trajectory::{
+    Course, Crossing, DISPLACEMENT, Section, SweptMotion, Trajectory, in_words,
+};
 
 /// The most times of rest that are listed.
 const MOST_HELD: usize = 6;
@@ -19,8 +21,8 @@ const MOST_ON_SECTION: usize = 40;
 /// The rows of the table where no samples are asked for.
 const ROWS: u32 = 20;
 
-/// The part of the energy that may go astray, or of the largest displacement by which two integrators may differ, in a motion that is
-/// trusted.
+/// The part of the energy that may go astray, or of the largest displacement by which two
+/// integrators may differ, in a motion that is trusted.
 pub const TRUSTED: f64 = 1e-6;
 
 /// A motion to be reported.
@@ -63,7 +65,8 @@ impl std::fmt::Display for Doubt {
 }
 
 impl TrajectoryReport<'_> {
-    /// The energy that is not accounted for, or the difference of two integrators, where it is more than [`TRUSTED`].
+    /// The energy that is not accounted for, or the difference of two integrators, where it is more
+    /// than [`TRUSTED`].
     pub fn doubt(&self) -> Option<Doubt> {
         let residual = self.motion.balance.as_ref().map(|balance| balance.residual);
         let difference = self.judge.map(|judge| self.motion.difference(judge));
@@ -72,7 +75,8 @@ impl TrajectoryReport<'_> {
         energy.or_else(|| difference.filter(is_doubtful).map(Doubt::Integrators))
     }
 
-    /// Whether the motion, and its judge, were followed as long as asked, and nothing speaks against them.
+    /// Whether the motion, and its judge, were followed as long as asked, and nothing speaks
+    /// against them.
     pub fn is_complete(&self) -> bool {
         let motions = [Some(self.motion), self.judge];
         motions.into_iter().flatten().all(Trajectory::is_complete) && self.doubt().is_none()
@@ -82,7 +86,9 @@ impl TrajectoryReport<'_> {
     pub fn times(&self) -> Vec<f64> {
         let end = self.motion.end();
         match self.samples.is_empty() {
-            true => (0..=ROWS).map(|row| end * f64::from(row) / f64::from(ROWS)).collect(),
+            true => (0..=ROWS)
+                .map(|row| end * f64::from(row) / f64::from(ROWS))
+                .collect(),
             false => self.samples.to_vec(),
         }
     }
@@ -106,7 +112,8 @@ impl TrajectoryReport<'_> {
 pub fn trajectory<'a>(report: &TrajectoryReport<'a>) -> Document<'a> {
     let motion = report.motion;
     let course = &motion.course;
-    let equation = |left: &Expr| Block::Line(Cow::Owned(Line::equation(left.clone(), Expr::zero())));
+    let equation =
+        |left: &Expr| Block::Line(Cow::Owned(Line::equation(left.clone(), Expr::zero())));
     let mut sections = vec![course.equations.iter().map(equation).collect::<Vec<_>>()];
     let values = course.values.iter().map(|(name, value)| Block::Value {
         name: *name,
@@ -160,16 +167,25 @@ fn on_section<'a>(motion: &Trajectory, section: &Section) -> Vec<Block<'a>> {
     match motion.touches().len() {
         0 => {}
         1 => words.push_str("; touched once, not crossed, which is no state"),
-        touches => words.push_str(&format!("; touched {touches} times, not crossed, which are no states")),
+        touches => words.push_str(&format!(
+            "; touched {touches} times, not crossed, which are no states"
+        )),
     }
     if count > MOST_ON_SECTION {
-        words.push_str(&format!("; the first {MOST_ON_SECTION}, all of them as CSV or JSON"));
+        words.push_str(&format!(
+            "; the first {MOST_ON_SECTION}, all of them as CSV or JSON"
+        ));
     }
     let heading = |name: &'static str| Heading {
         text: name,
         latex: name,
     };
-    let names = motion.course.rates.states.iter().map(|name| heading(name.name()));
+    let names = motion
+        .course
+        .rates
+        .states
+        .iter()
+        .map(|name| heading(name.name()));
     let row = |crossing: &Crossing| -> Vec<String> {
         let numbers = std::iter::once(&crossing.time).chain(&crossing.state);
         numbers.map(|number| decimal(*number)).collect()
@@ -192,10 +208,12 @@ pub(crate) fn section_in_words(section: &Section) -> String {
     }
 }
 
-/// The document of many motions, a row each: what is varied, the end, the extremes and how many states lie on the section.
+/// The document of many motions, a row each: what is varied, the end, the extremes and how many
+/// states lie on the section.
 pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
     let course = sweep.course;
-    let equation = |left: &Expr| Block::Line(Cow::Owned(Line::equation(left.clone(), Expr::zero())));
+    let equation =
+        |left: &Expr| Block::Line(Cow::Owned(Line::equation(left.clone(), Expr::zero())));
     let heading = |name: &'static str| Heading {
         text: name,
         latex: name,
@@ -218,9 +236,16 @@ pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
         let counted = on_section.then(|| motion.crossings.len().to_string());
         numbers.chain(counted).collect()
     });
-    let mut words = format!("{} motions to t = {}", sweep.motions.len(), decimal(course.duration));
+    let mut words = format!(
+        "{} motions to t = {}",
+        sweep.motions.len(),
+        decimal(course.duration)
+    );
     if course.after > 0.0 {
-        words.push_str(&format!("; least and greatest from t = {} on", decimal(course.after)));
+        words.push_str(&format!(
+            "; least and greatest from t = {} on",
+            decimal(course.after)
+        ));
     }
     let mut last = vec![Block::Note(words)];
     last.extend(
@@ -271,7 +296,11 @@ fn account<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
     )];
     facts.push((
         "until",
-        format!("t = {}, {}", decimal(motion.end()), in_words(motion.reason())),
+        format!(
+            "t = {}, {}",
+            decimal(motion.end()),
+            in_words(motion.reason())
+        ),
     ));
     let held: Vec<String> = motion
         .held()
@@ -331,7 +360,10 @@ fn account<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
             None => "",
         };
         let why = format!("then a start displaced by {DISPLACEMENT:e} of it is elsewhere{beyond}");
-        facts.push(("six digits hold", format!("until t = {}, {why}", decimal(known))));
+        facts.push((
+            "six digits hold",
+            format!("until t = {}, {why}", decimal(known)),
+        ));
     }
     if let Some(judge) = report.judge {
         let apart = significant(motion.difference(judge), 2);

@@ -1,8 +1,9 @@
-//! Certificates against frequencies that are known to forty digits: arithmetic-geometric means, in whole numbers of another crate.
+//! Certificates against frequencies that are known to forty digits: arithmetic-geometric means, in
+//! whole numbers of another crate.
 
 use lindstedt::certificate::{
-    Beyond, Certificate, CheckError, JudgedFormula, NotCertified, NotProved, Range, certify, certify_motion, check,
-    validity,
+    Beyond, Certificate, CheckError, JudgedFormula, NotCertified, NotProved, Range, certify,
+    certify_motion, check, validity,
 };
 use lindstedt::exact::{Bound, Integer, Rational, from_f64, ratio, to_f64};
 use lindstedt::expr::{Expr, parse_expression};
@@ -52,7 +53,10 @@ fn duffing(eps: &Rational, start: &Rational) -> Rational {
     let stiffening = eps * start * start;
     let one = ratio(1, 1);
     let half = &stiffening / Integer::from(2);
-    rational(mean(root(&fixed(&(&one + &stiffening))), root(&fixed(&(one + half)))))
+    rational(mean(
+        root(&fixed(&(&one + &stiffening))),
+        root(&fixed(&(one + half))),
+    ))
 }
 
 /// omega of `x'' + sin(x) = 0`.
@@ -67,7 +71,9 @@ fn rational(units: BigInt) -> Rational {
 
 fn radius(bound: f64) -> Rational {
     from_f64(bound).expect("a finite bound")
-        + ratio(1, 1_000_000_000_000_000_000) * ratio(1, 1_000_000_000_000_000_000) * ratio(1, 1_000_000)
+        + ratio(1, 1_000_000_000_000_000_000)
+            * ratio(1, 1_000_000_000_000_000_000)
+            * ratio(1, 1_000_000)
 }
 
 /// Whether the true frequency, known to 42 digits, is in the enclosure.
@@ -84,8 +90,8 @@ fn certified(equation: &str, order: u32, at: &str) -> (Oscillator, Solution, Val
     };
     let solution = solve(&oscillator, &options).expect("a solution");
     let at: Values = at.parse().expect("values");
-    let (certificate, proved) =
-        certify(&oscillator, &solution, &at).unwrap_or_else(|error| panic!("{equation} at {at:?}: {error}"));
+    let (certificate, proved) = certify(&oscillator, &solution, &at)
+        .unwrap_or_else(|error| panic!("{equation} at {at:?}: {error}"));
     assert_eq!(check(&certificate), Ok(proved));
     (oscillator, solution, at, certificate)
 }
@@ -95,8 +101,16 @@ fn thirty_digits_of_the_pendulum() {
     for (start, digits) in [("1/10", 32), ("3/2", 32), ("5/2", 32), ("31/10", 31)] {
         let (_, _, _, certificate) = certified("x'' + sin(x) = 0", 4, &format!("A = {start}"));
         let start: Rational = start.parse().expect("a fraction");
-        assert_eq!(contains(&certificate, &pendulum(&start)), Ok(true), "A = {start}");
-        let known = check(&certificate).expect("a proof").frequency.radius.value();
+        assert_eq!(
+            contains(&certificate, &pendulum(&start)),
+            Ok(true),
+            "A = {start}"
+        );
+        let known = check(&certificate)
+            .expect("a proof")
+            .frequency
+            .radius
+            .value();
         assert!(known < 10.0_f64.powi(-digits), "A = {start}: {known}");
     }
 }
@@ -116,8 +130,12 @@ fn the_error_of_a_formula_is_enclosed() {
         (1, "eps = 1/10, A = 1", ratio(1, 10), ratio(1, 1)),
         (3, "eps = -1/3, A = 3/4", ratio(-1, 3), ratio(3, 4)),
     ] {
-        let (oscillator, solution, values, certificate) = certified("x'' + x + eps*x^3 = 0", order, at);
-        let errors = check(&certificate).expect("a proof").formula.expect("a formula");
+        let (oscillator, solution, values, certificate) =
+            certified("x'' + x + eps*x^3 = 0", order, at);
+        let errors = check(&certificate)
+            .expect("a proof")
+            .formula
+            .expect("a formula");
         let formula = solution.motion_at(&values).expect("a motion");
         let truth = to_f64(&duffing(&eps, &start));
         let error = (formula.frequency() - truth).abs();
@@ -136,15 +154,20 @@ fn the_error_of_a_formula_is_enclosed() {
             .map(|(t, x, _)| (x - formula.at(t * truth / formula.frequency())).abs());
         let largest = apart.fold(0.0, f64::max);
         assert!(
-            errors.deviation.lower * 0.999 <= largest + 1e-9 && largest <= errors.deviation.upper + 1e-9,
+            errors.deviation.lower * 0.999 <= largest + 1e-9
+                && largest <= errors.deviation.upper + 1e-9,
             "{errors:?}, {largest}"
         );
         assert!(errors.deviation.upper < 1.001 * errors.deviation.lower);
         // No moment of fifty periods is outside.
         let period = std::f64::consts::TAU / truth;
-        for (turn, (instant, x, _)) in
-            (0..50).flat_map(|turn| samples.truth.iter().step_by(8).map(move |sample| (turn, sample)))
-        {
+        for (turn, (instant, x, _)) in (0..50).flat_map(|turn| {
+            samples
+                .truth
+                .iter()
+                .step_by(8)
+                .map(move |sample| (turn, sample))
+        }) {
             let t = f64::from(turn) * period + instant;
             let bound = errors.deviation.upper + errors.drift.upper * t;
             assert!((x - formula.at(t)).abs() <= bound + 1e-8, "t = {t}");
@@ -155,7 +178,11 @@ fn the_error_of_a_formula_is_enclosed() {
 #[test]
 fn proved_errors_shrink_with_the_power_that_is_left_out() {
     let relative = |order: u32, eps: &str| {
-        let (_, _, _, certificate) = certified("x'' + x + eps*x^3 = 0", order, &format!("eps = {eps}, A = 1"));
+        let (_, _, _, certificate) = certified(
+            "x'' + x + eps*x^3 = 0",
+            order,
+            &format!("eps = {eps}, A = 1"),
+        );
         check(&certificate)
             .expect("a proof")
             .formula
@@ -188,7 +215,9 @@ fn every_method_is_held_against_the_same_proof() {
         };
         let (_, proved) = match certify(&oscillator, &solution, &at) {
             Ok(proved) => proved,
-            Err(NotCertified::Convention | NotCertified::Motion(_) | NotCertified::Truth(_)) => continue,
+            Err(NotCertified::Convention | NotCertified::Motion(_) | NotCertified::Truth(_)) => {
+                continue;
+            }
             Err(error) => panic!("{method:?}: {error}"),
         };
         let error = (solution.motion_at(&at).expect("a motion").frequency() - truth).abs();
@@ -233,7 +262,10 @@ fn forces_of_every_function_of_the_evaluator() {
             (to_f64(&proved.frequency.middle) / truth - 1.0).abs() < 1e-12,
             "{force}"
         );
-        assert!(proved.frequency.radius.value() < 1e-28, "{force}: {proved:?}");
+        assert!(
+            proved.frequency.radius.value() < 1e-28,
+            "{force}: {proved:?}"
+        );
         assert!(check(&certificate).is_ok(), "{force}");
     }
 }
@@ -254,7 +286,9 @@ fn what_cannot_be_certified_is_refused_with_the_reason() {
     assert!(
         matches!(refused("x'' + x + abs(x)*x = 0", None, "A = 1"), NotCertified::NoSeries(NotProved::NoValue(part)) if part == "abs(x)")
     );
-    assert!(matches!(refused("x'' + sin(x) = 0", None, "A = pi/3"), NotCertified::Start(start) if start == "pi/3"));
+    assert!(
+        matches!(refused("x'' + sin(x) = 0", None, "A = pi/3"), NotCertified::Start(start) if start == "pi/3")
+    );
     assert!(matches!(
         refused("x'' + x + x^3 = 0", Some(Method::Averaging), "a = 1"),
         NotCertified::Convention
@@ -389,22 +423,31 @@ fn each_inequality_is_checked() {
     let (_, _, _, steep) = certified("x'' + sin(x) = 0", 4, "A = 3");
     let mut one = steep.clone();
     one.highest = 1;
-    one.inverse = steep.inverse[..2].iter().map(|row| row[..2].to_vec()).collect();
+    one.inverse = steep.inverse[..2]
+        .iter()
+        .map(|row| row[..2].to_vec())
+        .collect();
     assert!(matches!(
         check(&one),
         Err(CheckError::NotProved(NotProved::NoContraction(_)))
     ));
     // Y0 and Z2: too far for the curvature of the problem.
-    let far = |certificate: &mut Certificate| certificate.coefficients[1] += Integer::from(1) << (certificate.bits - 2);
+    let far = |certificate: &mut Certificate| {
+        certificate.coefficients[1] += Integer::from(1) << (certificate.bits - 2)
+    };
     assert!(matches!(
         reason(&far),
         CheckError::NotProved(NotProved::TooFar(_) | NotProved::TooLarge(_))
     ));
     // What is claimed.
-    let claimed = |certificate: &mut Certificate| certificate.claim = ratio(1, i64::MAX) * ratio(1, i64::MAX);
+    let claimed =
+        |certificate: &mut Certificate| certificate.claim = ratio(1, i64::MAX) * ratio(1, i64::MAX);
     assert!(matches!(
         reason(&claimed),
-        CheckError::ClaimedLess { what: "the radius", .. }
+        CheckError::ClaimedLess {
+            what: "the radius",
+            ..
+        }
     ));
     let mut boastful = sound.clone();
     if let Some(formula) = &mut boastful.formula {
@@ -430,7 +473,8 @@ fn each_inequality_is_checked() {
     ));
     // The symmetry.
     let even = |certificate: &mut Certificate| {
-        certificate.force = &certificate.force + &Expr::symbol("x").integer_power(2).expect("a square")
+        certificate.force =
+            &certificate.force + &Expr::symbol("x").integer_power(2).expect("a square")
     };
     assert_eq!(reason(&even), CheckError::NotProved(NotProved::NotOdd));
     // Sizes.
@@ -456,7 +500,8 @@ fn each_inequality_is_checked() {
     ));
 }
 
-/// How far a formula is within a tolerance, as it is proved, and the amplitude from which on it is not.
+/// How far a formula is within a tolerance, as it is proved, and the amplitude from which on it is
+/// not.
 fn proved_range(
     equation: &str,
     method: Method,
@@ -501,8 +546,14 @@ fn a_proved_range_ends_where_the_error_passes_the_tolerance() {
         (&sine, 2, 1e-2),
     ] {
         let ends = [from.clone(), end.clone()];
-        let (to, beyond, solution) =
-            proved_range(equation, Method::LindstedtPoincare, order, "", ends.clone(), tolerance);
+        let (to, beyond, solution) = proved_range(
+            equation,
+            Method::LindstedtPoincare,
+            order,
+            "",
+            ends.clone(),
+            tolerance,
+        );
         let error = |amplitude: &Rational| {
             let at: Values = format!("A = {amplitude}").parse().expect("values");
             let formula = solution.motion_at(&at).expect("a motion").frequency();
@@ -534,8 +585,8 @@ fn a_proved_range_ends_where_the_error_passes_the_tolerance() {
     }
 }
 
-/// If the error hardly grows with the amplitude, the proved range still ends where the tolerance is passed: omega^2 = 1 + 3 A^2/4 for x + x^3 is off by
-/// 2.2 % at most.
+/// If the error hardly grows with the amplitude, the proved range still ends where the tolerance is
+/// passed: omega^2 = 1 + 3 A^2/4 for x + x^3 is off by 2.2 % at most.
 #[test]
 fn a_proved_range_reaches_its_end_where_the_error_is_flat() {
     let cubic = "x'' + x + x^3 = 0";
@@ -591,7 +642,11 @@ fn a_range_may_be_proved_to_its_end_or_end_with_the_well() {
         0.5,
     );
     assert!(
-        to < ratio(1, 1) && matches!(beyond, Beyond::Open(_) | Beyond::Unproved(..) | Beyond::Further(_)),
+        to < ratio(1, 1)
+            && matches!(
+                beyond,
+                Beyond::Open(_) | Beyond::Unproved(..) | Beyond::Further(_)
+            ),
         "{to}, {beyond:?}"
     );
     // A law without an expression.
@@ -614,7 +669,8 @@ fn a_range_may_be_proved_to_its_end_or_end_with_the_well() {
     assert!(matches!(refused, Err(NotCertified::Law(_))), "{refused:?}");
 }
 
-/// omega^2 = 1 - A^2/8 has no root at A = 3: the motion is proved without it, and its frequency to thirty digits.
+/// omega^2 = 1 - A^2/8 has no root at A = 3: the motion is proved without it, and its frequency to
+/// thirty digits.
 #[test]
 fn a_motion_is_proved_where_its_formula_has_no_value() {
     let oscillator = Oscillator::parse("x'' + sin(x) = 0").expect("an equation");
@@ -626,7 +682,9 @@ fn a_motion_is_proved_where_its_formula_has_no_value() {
     let at: Values = "A = 3".parse().expect("values");
     let refused = certify(&oscillator, &solution, &at).expect_err("no formula");
     assert!(
-        refused.help().is_some_and(|help| help.contains("--no-formula")),
+        refused
+            .help()
+            .is_some_and(|help| help.contains("--no-formula")),
         "{refused}"
     );
     let (certificate, proved) = certify_motion(&oscillator, &solution, &at).expect("a proof");
@@ -634,7 +692,8 @@ fn a_motion_is_proved_where_its_formula_has_no_value() {
     assert_eq!(contains(&certificate, &pendulum(&ratio(3, 1))), Ok(true));
 }
 
-/// Half a period later the pendulum is at -A: a file that begins there with the formula for A would say that it is off by 2 A.
+/// Half a period later the pendulum is at -A: a file that begins there with the formula for A would
+/// say that it is off by 2 A.
 #[test]
 fn a_formula_begins_where_the_motion_does() {
     let (.., sound) = certified("x'' + sin(x) = 0", 4, "A = 3/2");
@@ -646,20 +705,32 @@ fn a_formula_begins_where_the_motion_does() {
     };
     let turn = |certificate: &mut Certificate| {
         certificate.start = -certificate.start.clone();
-        certificate.coefficients.iter_mut().for_each(|units| *units = -&*units);
-        certificate.inverse[0].iter_mut().for_each(|entry| *entry = -&*entry);
+        certificate
+            .coefficients
+            .iter_mut()
+            .for_each(|units| *units = -&*units);
+        certificate.inverse[0]
+            .iter_mut()
+            .for_each(|entry| *entry = -&*entry);
     };
     let mut alone = sound.clone();
     turn(&mut alone);
     alone.formula = None;
     assert!(check(&alone).is_ok(), "it is a motion");
-    assert!(reason(&turn).contains("begins elsewhere"), "{}", reason(&turn));
+    assert!(
+        reason(&turn).contains("begins elsewhere"),
+        "{}",
+        reason(&turn)
+    );
     let formula = |change: fn(&mut JudgedFormula)| {
         reason(&|other: &mut Certificate| change(other.formula.as_mut().expect("a formula")))
     };
     assert!(formula(|formula| formula.frequency = -&formula.frequency).contains("not positive"));
     // Another law, and the law at another amplitude with a frequency that is right.
-    assert!(formula(|formula| formula.law = "omega = 1 - A^2/16".to_owned()).contains("another frequency"));
+    assert!(
+        formula(|formula| formula.law = "omega = 1 - A^2/16".to_owned())
+            .contains("another frequency")
+    );
     // About a place of rest that is no fraction the amplitude is that from the rounded one.
     let (.., shifted) = certified("x'' + x - cos(x) = 0", 2, "A = 1/10");
     assert!(check(&shifted).expect("a proof").law_is_held);
@@ -667,7 +738,10 @@ fn a_formula_begins_where_the_motion_does() {
         formula.law = "omega^2 = 1 - 9*A^2/32 + 7*81*A^4/(16*1536)".to_owned();
         formula.values = "A = 1".parse().expect("values");
     });
-    assert!(elsewhere.contains("amplitude is not that of the motion"), "{elsewhere}");
+    assert!(
+        elsewhere.contains("amplitude is not that of the motion"),
+        "{elsewhere}"
+    );
 }
 
 /// Whatever is proved, what is printed is no stronger.
@@ -704,9 +778,12 @@ fn every_printed_bound_is_rounded_outwards() {
             validity: None,
             tolerance: format!("{percent}e-7").parse().expect("a number"),
         };
-        let text = lindstedt::export::text::document(&lindstedt::report::certificate(&report), usize::MAX);
+        let text =
+            lindstedt::export::text::document(&lindstedt::report::certificate(&report), usize::MAX);
         let fact = |name: &str| {
-            let line = text.lines().find(|line| line.trim_start().starts_with(name));
+            let line = text
+                .lines()
+                .find(|line| line.trim_start().starts_with(name));
             let line = line.unwrap_or_else(|| panic!("{name}: {text}"));
             line.trim_start()[name.len()..].trim().to_owned()
         };
@@ -726,23 +803,35 @@ fn every_printed_bound_is_rounded_outwards() {
                 (None, Some((lower, upper))) => [number(lower), number(upper)],
                 (None, None) => [number(&words), number(&words)],
             };
-            let [least, most] = [range.lower, range.upper].map(|end| finite(end) * Integer::from(factor));
-            prop_assert!(lower <= least && most <= upper, "{name}: {range:?}: {words}");
+            let [least, most] =
+                [range.lower, range.upper].map(|end| finite(end) * Integer::from(factor));
+            prop_assert!(
+                lower <= least && most <= upper,
+                "{name}: {range:?}: {words}"
+            );
         }
         let words = fact("omega ");
         let (middle, radius) = words.split_once(" +- ").expect("an enclosure");
-        let apart = (number(middle) - &proved.frequency.middle).abs() + finite(proved.frequency.radius.value());
+        let apart = (number(middle) - &proved.frequency.middle).abs()
+            + finite(proved.frequency.radius.value());
         prop_assert!(apart <= number(radius), "{words}: {:?}", proved.frequency);
         let words = fact("deviation in time");
         let (_, bound) = words.split_once("<= ").expect("a bound");
         let (deviation, drift) = bound.split_once(" + ").expect("two terms");
         let (drift, _) = drift.split_once("*|t|").expect("a factor");
-        prop_assert!(number(deviation) >= finite(errors.deviation.upper), "{words}");
+        prop_assert!(
+            number(deviation) >= finite(errors.deviation.upper),
+            "{words}"
+        );
         prop_assert!(number(drift) >= finite(errors.drift.upper), "{words}");
         // The tolerance is that which was meant, in full.
         let words = fact("verdict");
-        let tail = words.split_once(" within ").or_else(|| words.split_once(" beyond "));
-        let (shown, _) = tail.and_then(|(_, tail)| tail.split_once(" %")).expect("a tolerance");
+        let tail = words
+            .split_once(" within ")
+            .or_else(|| words.split_once(" beyond "));
+        let (shown, _) = tail
+            .and_then(|(_, tail)| tail.split_once(" %"))
+            .expect("a tolerance");
         prop_assert_eq!(number(shown), ratio(i64::from(percent), 100_000));
         Ok(())
     });
@@ -752,7 +841,9 @@ fn every_printed_bound_is_rounded_outwards() {
 /// The fraction of a decimal, `2.5e-33`.
 fn exactly(text: &str) -> Rational {
     let (digits, exponent) = text.split_once('e').unwrap_or((text, "0"));
-    let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let decimals = digits
+        .split_once('.')
+        .map_or(0, |(_, decimals)| decimals.len());
     let count: Rational = digits.replace('.', "").parse().expect("digits");
     count * ratio(10, 1).pow(exponent.parse::<i32>().expect("an exponent") - decimals as i32)
 }

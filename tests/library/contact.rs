@@ -1,5 +1,5 @@
-//! One impact of the pendulum, from equation (8) to the verdict: the closed forms against the true motion and against
-//! numbers found independently.
+//! One impact of the pendulum, from equation (8) to the verdict: the closed forms against the true
+//! motion and against numbers found independently.
 
 use std::f64::consts::PI;
 
@@ -71,7 +71,8 @@ fn contact_times_over_many_decades_of_stiffness() {
     for power in [3, 5, 7, 9, 11, 14, 18] {
         let stiffness = 10.0_f64.powi(power);
         let truth = truth(stiffness);
-        // Gravity shortens the depth by sin(x_c) d against v^2/2: Hertz alone is right for stiff barriers.
+        // Gravity shortens the depth by sin(x_c) d against v^2/2: Hertz alone is right for stiff
+        // barriers.
         let depth = hertz::penetration(stiffness, truth.touch.v).unwrap();
         let gravity = depth * 1.5_f64.sin();
         assert!(
@@ -83,7 +84,8 @@ fn contact_times_over_many_decades_of_stiffness() {
             (truth.duration / duration - 1.0).abs() < 2.0 * gravity + 1e-6,
             "duration at gamma = {stiffness}"
         );
-        // And the closed form with the energy's speed: 1.6 % long, the least-squares line's own error.
+        // And the closed form with the energy's speed: 1.6 % long, the least-squares line's own
+        // error.
         let closed = paper(stiffness, ContactSpeed::Energy);
         assert!(
             (closed.duration / duration - 1.016).abs() < 2.0 * gravity + 1e-3,
@@ -94,7 +96,8 @@ fn contact_times_over_many_decades_of_stiffness() {
 
 #[test]
 fn the_printed_contact_duration_needs_an_absurd_stiffness() {
-    // 9.258e-8 as dimensionless time belongs to gamma = 6.2e18 in a Hertz contact of the true speed.
+    // 9.258e-8 as dimensionless time belongs to gamma = 6.2e18 in a Hertz contact of the true
+    // speed.
     let truth = truth(6.2e18);
     assert!(
         (truth.duration / 9.258e-8 - 1.0).abs() < 0.002,
@@ -122,7 +125,8 @@ fn the_errors_of_the_paper_have_the_sizes_known() {
 
 #[test]
 fn an_exact_frequency_does_not_make_the_cosine_exact() {
-    // The true omega at 1.5 rad instead of the law: the wave form alone remains, and the verdict sees it.
+    // The true omega at 1.5 rad instead of the law: the wave form alone remains, and the verdict
+    // sees it.
     let exact = Swing {
         frequency_squared: 0.860_608_346_679_613_f64.powi(2),
         ..swing(1.5, 0.323, 1e6)
@@ -138,8 +142,8 @@ fn an_exact_frequency_does_not_make_the_cosine_exact() {
 
 #[test]
 fn small_swings_are_described_well() {
-    // Every approximation is of second order in A: the whole deviation, in units of A, falls like A^2, until only the
-    // straight line in the contact is left.
+    // Every approximation is of second order in A: the whole deviation, in units of A, falls like
+    // A^2, until only the straight line in the contact is left.
     let relative = |amplitude: f64| {
         let barrier = 0.2 * amplitude;
         let options = Options {
@@ -158,7 +162,8 @@ fn small_swings_are_described_well() {
     assert!((slope - 2.0).abs() < 0.1, "exponent {slope}");
 }
 
-/// K of the complementary modulus k', by the arithmetic-geometric mean: as exact near k = 1 as anywhere.
+/// K of the complementary modulus k', by the arithmetic-geometric mean: as exact near k = 1 as
+/// anywhere.
 fn complete_integral(complement: f64) -> f64 {
     let (mut one, mut other) = (1.0, complement);
     for _ in 0..60 {
@@ -195,15 +200,25 @@ fn tiny_and_nearly_upright_swings_are_judged_as_closely_as_any_other() {
         };
         let modulus = (0.5 * amplitude).sin();
         let angle = ((0.5 * barrier).sin() / modulus).asin();
-        let touch = complete_integral((0.5 * amplitude).cos()) + ellip::ellipf(angle, modulus * modulus).unwrap();
-        let speed = 2.0 * ((0.5 * (amplitude + barrier)).sin() * (0.5 * (amplitude - barrier)).sin()).sqrt();
+        let touch = complete_integral((0.5 * amplitude).cos())
+            + ellip::ellipf(angle, modulus * modulus).unwrap();
+        let speed = 2.0
+            * ((0.5 * (amplitude + barrier)).sin() * (0.5 * (amplitude - barrier)).sin()).sqrt();
         let truth = &found.truth;
         near(truth.touch.t, touch, "time to contact");
         near(truth.touch.v, speed, "speed");
         near(truth.period, 2.0 * touch + truth.duration, "period");
-        assert!(truth.energy_drift < 1e-8, "A = {amplitude}: {}", truth.energy_drift);
+        assert!(
+            truth.energy_drift < 1e-8,
+            "A = {amplitude}: {}",
+            truth.energy_drift
+        );
         if stiffness > 1e20 {
-            near(truth.duration, hertz::duration(stiffness, speed).unwrap(), "duration");
+            near(
+                truth.duration,
+                hertz::duration(stiffness, speed).unwrap(),
+                "duration",
+            );
             near(
                 truth.penetration,
                 hertz::penetration(stiffness, speed).unwrap(),
@@ -224,7 +239,8 @@ fn a_barrier_just_before_the_turning_point_is_met_as_the_energy_says() {
     };
     for distance in [1e-4, 1e-6, 1e-8] {
         let barrier = 1.5 - distance;
-        let found = impact::solve(setup(1.5, barrier)).unwrap_or_else(|error| panic!("{distance}: {error}"));
+        let found = impact::solve(setup(1.5, barrier))
+            .unwrap_or_else(|error| panic!("{distance}: {error}"));
         let speed = 2.0 * ((0.5 * (1.5 + barrier)).sin() * (0.5 * (1.5 - barrier)).sin()).sqrt();
         assert!(
             (found.truth.touch.v / speed - 1.0).abs() < 2e-6,
@@ -239,7 +255,10 @@ fn a_barrier_just_before_the_turning_point_is_met_as_the_energy_says() {
         ..setup(1.5, 0.323)
     })
     .unwrap_err();
-    assert!(refused.to_string().contains("raise step_limit in [run]"), "{refused}");
+    assert!(
+        refused.to_string().contains("raise step_limit in [run]"),
+        "{refused}"
+    );
 }
 
 proptest! {
@@ -270,7 +289,8 @@ proptest! {
         }
     }
 
-    /// The contact never reaches deeper than its energy allows, and the closed form leaves where it entered.
+    /// The contact never reaches deeper than its energy allows, and the closed form leaves where it
+    /// entered.
     #[test]
     fn the_contact_ends_where_it_began(
         amplitude in 0.2..2.7_f64, part in -0.95..0.95_f64, power in 2.0..12.0_f64, rule in 0..6_usize
@@ -289,7 +309,8 @@ proptest! {
     }
 }
 
-/// The grid of swings and barriers: from tiny to almost over the top, preloaded to grazing, soft to hard.
+/// The grid of swings and barriers: from tiny to almost over the top, preloaded to grazing, soft to
+/// hard.
 #[test]
 fn the_derived_phases_pass_their_judge_everywhere() {
     let mut worst = 0.0_f64;
@@ -311,17 +332,28 @@ fn the_derived_phases_pass_their_judge_everywhere() {
                     .iter()
                     .position(|column| column.reading == Reading::Derived);
                 let index = index.unwrap_or_else(|| panic!("{at}: {:?}", found.tried));
-                assert_eq!(found.shortcomings(index, 1e-3), vec![], "{at}: {:?}", found.tried);
-                // The energy knows the speed, elliptic functions the time: neither is asked by the judge.
+                assert_eq!(
+                    found.shortcomings(index, 1e-3),
+                    vec![],
+                    "{at}: {:?}",
+                    found.tried
+                );
+                // The energy knows the speed, elliptic functions the time: neither is asked by the
+                // judge.
                 let derived = &found.columns[index].phases;
-                let speed = 2.0 * ((0.5 * (amplitude + barrier)).sin() * (0.5 * (amplitude - barrier)).sin()).sqrt();
+                let speed = 2.0
+                    * ((0.5 * (amplitude + barrier)).sin() * (0.5 * (amplitude - barrier)).sin())
+                        .sqrt();
                 let modulus = (0.5 * amplitude).sin();
                 let angle = ((0.5 * barrier).sin() / modulus).asin();
-                let touch =
-                    ellip::ellipk(modulus * modulus).unwrap() + ellip::ellipf(angle, modulus * modulus).unwrap();
+                let touch = ellip::ellipk(modulus * modulus).unwrap()
+                    + ellip::ellipf(angle, modulus * modulus).unwrap();
                 for (value, exact) in [(derived.speed, speed), (derived.phases[0].end, touch)] {
                     worst = worst.max((value / exact - 1.0).abs());
-                    assert!((value / exact - 1.0).abs() < 1.001e-3, "{at}: {value} against {exact}");
+                    assert!(
+                        (value / exact - 1.0).abs() < 1.001e-3,
+                        "{at}: {value} against {exact}"
+                    );
                 }
             }
         }
@@ -330,7 +362,8 @@ fn the_derived_phases_pass_their_judge_everywhere() {
     assert!(worst > 1e-4, "{worst}");
 }
 
-/// Joins of the derived phases: continuous in place to rounding, in speed to what is left of the series of the contact.
+/// Joins of the derived phases: continuous in place to rounding, in speed to what is left of the
+/// series of the contact.
 #[test]
 fn the_derived_phases_join() {
     for (release, barrier, side) in [
@@ -352,7 +385,10 @@ fn the_derived_phases_join() {
         for (before, after) in [(approach, contact), (contact, back)] {
             let (left, right) = (before.at(before.end), after.at(after.start));
             assert!((left.0 - right.0).abs() < 1e-12, "{left:?} {right:?}");
-            assert!((left.1 - right.1).abs() < 2e-4 * derived.speed, "{left:?} {right:?}");
+            assert!(
+                (left.1 - right.1).abs() < 2e-4 * derived.speed,
+                "{left:?} {right:?}"
+            );
         }
     }
 }
@@ -389,7 +425,8 @@ fn a_left_barrier_mirrors_a_right_one() {
     }
 }
 
-/// x'' + x^3 = 0 has its motion in elliptic functions, and its contact with a cone d^2 its energy: x'^2/2 = (A^4 - x^4)/4.
+/// x'' + x^3 = 0 has its motion in elliptic functions, and its contact with a cone d^2 its energy:
+/// x'^2/2 = (A^4 - x^4)/4.
 #[test]
 fn a_swing_and_a_barrier_of_the_users_own() {
     let found = impact::solve(Setup {
@@ -427,11 +464,13 @@ fn a_swing_and_a_barrier_of_the_users_own() {
     assert!((doubled.truth.period / found.truth.period - 1.0).abs() < 1e-12);
 }
 
-/// A contact force that is a difference of nearly equal numbers near the touch: the energy of its Taylor series, which cancels
-/// nowhere, is taken up at the greatest depth, from soft barriers to hard ones.
+/// A contact force that is a difference of nearly equal numbers near the touch: the energy of its
+/// Taylor series, which cancels nowhere, is taken up at the greatest depth, from soft barriers to
+/// hard ones.
 #[test]
 fn a_force_that_is_a_difference_near_the_touch_keeps_its_digits() {
-    /// Coefficient and power of the depth of the n-th term of a force over k, or nothing where that is the last one.
+    /// Coefficient and power of the depth of the n-th term of a force over k, or nothing where that
+    /// is the last one.
     type Term = fn(u32) -> (f64, f64);
     fn over_factorial(n: u32) -> f64 {
         (1..=n).map(f64::from).map(f64::recip).product()
@@ -440,25 +479,40 @@ fn a_force_that_is_a_difference_near_the_touch_keeps_its_digits() {
         if n.is_multiple_of(2) { 1.0 } else { -1.0 }
     }
     fn binomial(n: u32) -> f64 {
-        (0..n).map(|j| (0.5 - f64::from(j)) / f64::from(j + 1)).product()
+        (0..n)
+            .map(|j| (0.5 - f64::from(j)) / f64::from(j + 1))
+            .product()
     }
     let forces: [(&str, Term); 11] = [
         ("k*(exp(20*d) - 1)", |n| {
-            (20.0_f64.powi(n as i32 + 1) * over_factorial(n + 1), f64::from(n + 1))
+            (
+                20.0_f64.powi(n as i32 + 1) * over_factorial(n + 1),
+                f64::from(n + 1),
+            )
         }),
         ("k*(1 - cos(d))", |n| {
-            (alternating(n) * over_factorial(2 * n + 2), f64::from(2 * n + 2))
+            (
+                alternating(n) * over_factorial(2 * n + 2),
+                f64::from(2 * n + 2),
+            )
         }),
-        ("k*(cosh(d) - 1)", |n| (over_factorial(2 * n + 2), f64::from(2 * n + 2))),
+        ("k*(cosh(d) - 1)", |n| {
+            (over_factorial(2 * n + 2), f64::from(2 * n + 2))
+        }),
         ("k*((1 + d)^3 - 1)", |n| {
             (
                 [3.0, 3.0, 1.0].get(n as usize).copied().unwrap_or(0.0),
                 f64::from(n + 1),
             )
         }),
-        ("k*(exp(d) - 1 - d)", |n| (over_factorial(n + 2), f64::from(n + 2))),
+        ("k*(exp(d) - 1 - d)", |n| {
+            (over_factorial(n + 2), f64::from(n + 2))
+        }),
         ("k*(d - sin(d))", |n| {
-            (alternating(n) * over_factorial(2 * n + 3), f64::from(2 * n + 3))
+            (
+                alternating(n) * over_factorial(2 * n + 3),
+                f64::from(2 * n + 3),
+            )
         }),
         ("k*(exp(d^(3/2)) - 1)", |n| {
             (over_factorial(n + 1), 1.5 * f64::from(n + 1))
@@ -466,9 +520,14 @@ fn a_force_that_is_a_difference_near_the_touch_keeps_its_digits() {
         ("k*(cosh(sqrt(d)) - 1)", |n| {
             (over_factorial(2 * n + 2), f64::from(n + 1))
         }),
-        ("k*(sqrt(d + d^2) - sqrt(d))", |n| (binomial(n + 1), f64::from(n) + 1.5)),
+        ("k*(sqrt(d + d^2) - sqrt(d))", |n| {
+            (binomial(n + 1), f64::from(n) + 1.5)
+        }),
         ("k*(1 - cos(d))/d", |n| {
-            (alternating(n) * over_factorial(2 * n + 2), f64::from(2 * n + 1))
+            (
+                alternating(n) * over_factorial(2 * n + 2),
+                f64::from(2 * n + 1),
+            )
         }),
         ("k*(exp(d) - 1 - d - d^2/2 - d^3/6)", |n| {
             (over_factorial(n + 4), f64::from(n + 4))
@@ -489,7 +548,8 @@ fn a_force_that_is_a_difference_near_the_touch_keeps_its_digits() {
                 let sum: f64 = terms
                     .map(|(c, power)| c * depth.powf(power + 1.0) / (power + 1.0))
                     .sum();
-                stiffness.parse::<f64>().unwrap() * sum + 2.0 * (0.5 * depth).sin() * (0.323 + 0.5 * depth).sin()
+                stiffness.parse::<f64>().unwrap() * sum
+                    + 2.0 * (0.5 * depth).sin() * (0.323 + 0.5 * depth).sin()
             };
             let left = taken_up(depth) / energy - 1.0;
             assert!(left.abs() < 1e-8, "{text}, k = {stiffness}: {left:e}");
@@ -595,7 +655,10 @@ fn the_derived_phases_join_by_every_law_of_the_contact() {
                 ..pendulum(stiffness)
             };
             let impact = impact::solve(setup).unwrap_or_else(|error| panic!("{law}: {error}"));
-            let phases = &impact.column(Reading::Derived).expect("derived phases").phases;
+            let phases = &impact
+                .column(Reading::Derived)
+                .expect("derived phases")
+                .phases;
             let [approach, contact, back] = &phases.phases;
             // Of the corrected law the depth is exact at touch, the speed nearly.
             let speed_kept = if law == ContactLaw::CorrectedPowerLaw {
@@ -605,16 +668,25 @@ fn the_derived_phases_join_by_every_law_of_the_contact() {
             };
             for (left, right) in [(approach, contact), (contact, back)] {
                 let (before, after) = (left.at(left.end), right.at(right.start));
-                assert!((before.0 - after.0).abs() < 1e-12, "{law}: {before:?} and {after:?}");
+                assert!(
+                    (before.0 - after.0).abs() < 1e-12,
+                    "{law}: {before:?} and {after:?}"
+                );
                 let jump = (before.1 - after.1).abs() / phases.speed;
-                assert!(jump < speed_kept, "{law}: the speed jumps by {jump} of itself");
+                assert!(
+                    jump < speed_kept,
+                    "{law}: the speed jumps by {jump} of itself"
+                );
             }
             let Form::Contact { depth, .. } = &contact.form else {
                 panic!("{law}: {:?}", contact.form)
             };
             assert!(depth.deviation <= 1e-6, "{law}: {}", depth.deviation);
             let deepest = depth.at(0.5 * phases.duration).0;
-            assert!((deepest / phases.penetration - 1.0).abs() < 3e-6, "{law}: {deepest}");
+            assert!(
+                (deepest / phases.penetration - 1.0).abs() < 3e-6,
+                "{law}: {deepest}"
+            );
             // The swing is the same by every law: none makes up for the error of another.
             assert!(
                 (phases.speed / impact.truth.touch.v - 1.0).abs() < 1e-3,
@@ -625,7 +697,8 @@ fn the_derived_phases_join_by_every_law_of_the_contact() {
     }
 }
 
-/// The numbers of a table of docs/contact.md that begins after these words: duration, depth, peak force and motion, in percent.
+/// The numbers of a table of docs/contact.md that begins after these words: duration, depth, peak
+/// force and motion, in percent.
 fn table_of_the_page(words: &str) -> Vec<(String, [f64; 4])> {
     let page = include_str!("../../docs/contact.md");
     let (_, rest) = page.split_once(words).expect("the words are there");
@@ -635,7 +708,10 @@ fn table_of_the_page(words: &str) -> Vec<(String, [f64; 4])> {
         .map(|line| {
             let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
             let number = |index: usize| cells[index].parse().expect("a number");
-            (cells[0].trim_matches('`').to_owned(), [1, 2, 3, 4].map(number))
+            (
+                cells[0].trim_matches('`').to_owned(),
+                [1, 2, 3, 4].map(number),
+            )
         })
         .collect()
 }
@@ -653,9 +729,17 @@ fn the_table_of_an_impact_is_that_of_the_page() {
     for (row, (law, printed)) in impact.contact_laws.iter().zip(page) {
         assert_eq!(row.law.name(), law);
         let (motion, errors) = row.outcome.as_ref().expect("every law applies");
-        let found = [errors.duration, errors.depth, errors.peak_force, errors.motion];
+        let found = [
+            errors.duration,
+            errors.depth,
+            errors.peak_force,
+            errors.motion,
+        ];
         for (found, printed) in found.into_iter().zip(printed) {
-            assert!((100.0 * found - printed).abs() < 2e-4, "{law}: {found} and {printed}");
+            assert!(
+                (100.0 * found - printed).abs() < 2e-4,
+                "{law}: {found} and {printed}"
+            );
         }
         if row.law == ContactLaw::Exact {
             let truth = &impact.truth;
@@ -663,7 +747,12 @@ fn the_table_of_an_impact_is_that_of_the_page() {
             assert!((motion.depth / truth.penetration - 1.0).abs() < 1e-7);
         }
     }
-    assert!(impact::solve(pendulum(1e3)).expect("an impact").contact_laws.is_empty());
+    assert!(
+        impact::solve(pendulum(1e3))
+            .expect("an impact")
+            .contact_laws
+            .is_empty()
+    );
 }
 
 #[test]
@@ -674,7 +763,8 @@ fn laws_of_a_power_are_refused_where_there_is_none() {
         every_contact_law: true,
         ..Setup::default()
     };
-    let refused = impact::solve(setup("1e6*d + 1e9*d^3", ContactLaw::PowerLaw)).expect("the paper's reading");
+    let refused =
+        impact::solve(setup("1e6*d + 1e9*d^3", ContactLaw::PowerLaw)).expect("the paper's reading");
     assert!(
         refused.flight.is_none() && refused.tried.len() == 3,
         "{:?}",
@@ -683,12 +773,20 @@ fn laws_of_a_power_are_refused_where_there_is_none() {
     let reason = refused.tried[0].error.as_ref().expect_err("a reason");
     assert!(reason.contains("not given as a power"), "{reason}");
     let applies = |impact: &impact::Impact, law| {
-        let row = impact.contact_laws.iter().find(|row| row.law == law).expect("a row");
+        let row = impact
+            .contact_laws
+            .iter()
+            .find(|row| row.law == law)
+            .expect("a row");
         row.outcome.is_ok()
     };
     assert!(!applies(&refused, ContactLaw::PowerLaw) && applies(&refused, ContactLaw::Homotopy));
     // The exponent is found, whatever stands before the power.
-    for (force, exponent) in [("3*gamma*d^2/7", 2.0), ("1e8*d^(7/3)", 7.0 / 3.0), ("gamma*d", 1.0)] {
+    for (force, exponent) in [
+        ("3*gamma*d^2/7", 2.0),
+        ("1e8*d^(7/3)", 7.0 / 3.0),
+        ("gamma*d", 1.0),
+    ] {
         let found = impact::solve(setup(force, ContactLaw::PowerLaw)).expect("an impact");
         let Some(DerivedContact::Elastic(contact)) = &found.contact else {
             panic!("{force}: no contact")
@@ -696,7 +794,10 @@ fn laws_of_a_power_are_refused_where_there_is_none() {
         let n = contact.exponent().expect("a power");
         assert!((n - exponent).abs() < 1e-12, "{force}: {n}");
         // Hard barriers: gravity is small beside them.
-        assert!((contact.duration / found.truth.duration - 1.0).abs() < 2e-3, "{force}");
+        assert!(
+            (contact.duration / found.truth.duration - 1.0).abs() < 2e-3,
+            "{force}"
+        );
     }
 }
 
@@ -711,8 +812,12 @@ fn the_restitution_asked_for_is_the_one_that_is_simulated() {
         };
         let found = impact::solve(setup).unwrap_or_else(|error| panic!("{wanted}: {error}"));
         assert!(found.no_paper.is_some());
-        let phases = &found.column(Reading::Derived).expect("derived phases").phases;
-        // By the closed form, by Runge-Kutta on the equation, and by the simulation of equation (7) with its mu.
+        let phases = &found
+            .column(Reading::Derived)
+            .expect("derived phases")
+            .phases;
+        // By the closed form, by Runge-Kutta on the equation, and by the simulation of equation (7)
+        // with its mu.
         let allowed = 3e-3 * wanted;
         assert!(
             (phases.exit_speed / phases.speed - wanted).abs() < allowed,
@@ -733,7 +838,8 @@ fn the_restitution_asked_for_is_the_one_that_is_simulated() {
             duration: 5.0,
             ..Settings::default()
         };
-        let motion = impact::simulate(&model, Start::default(), Integrator::Taylor, &settings).expect("a motion");
+        let motion = impact::simulate(&model, Start::default(), Integrator::Taylor, &settings)
+            .expect("a motion");
         let simulated = motion.impacts[0].restitution.expect("it bounces");
         assert!(
             (simulated - found.truth.restitution()).abs() < 1e-6,
@@ -745,9 +851,17 @@ fn the_restitution_asked_for_is_the_one_that_is_simulated() {
         assert!((approach.at(approach.end).0 - contact.at(contact.start).0).abs() < 1e-12);
         assert!(back.at(back.end).1.abs() < 1e-12);
         let turn = back.at(back.end).0;
-        assert!((turn - found.place_of_turn()).abs() < 2e-3, "{wanted}: turns at {turn}");
+        assert!(
+            (turn - found.place_of_turn()).abs() < 2e-3,
+            "{wanted}: turns at {turn}"
+        );
         let verdict = found.verdicts(0.01);
-        assert_eq!(verdict, [Verdict::Pass], "{wanted}: {:?}", found.shortcomings(0, 0.01));
+        assert_eq!(
+            verdict,
+            [Verdict::Pass],
+            "{wanted}: {:?}",
+            found.shortcomings(0, 0.01)
+        );
     }
 }
 
@@ -759,7 +873,8 @@ fn hardly_damped_is_undamped() {
     })
     .expect("an impact");
     let undamped = impact::solve(pendulum(1e6)).expect("an impact");
-    let numbers = |impact: &impact::Impact| impact.quantities().map(|quantity| quantity.runge_kutta);
+    let numbers =
+        |impact: &impact::Impact| impact.quantities().map(|quantity| quantity.runge_kutta);
     for (one, other) in numbers(&damped).into_iter().zip(numbers(&undamped)) {
         assert!((one / other - 1.0).abs() < 1e-7, "{one} and {other}");
     }

@@ -1,5 +1,6 @@
-//! Powers such as 3/2 that begin at a corner, written with `max`, `min` or `abs`: against the energy, a period in closed form, the same
-//! force behind a step, and between several bodies the laws of impact and fixed steps of the classical Runge-Kutta method.
+//! Powers such as 3/2 that begin at a corner, written with `max`, `min` or `abs`: against the
+//! energy, a period in closed form, the same force behind a step, and between several bodies the
+//! laws of impact and fixed steps of the classical Runge-Kutta method.
 
 use std::collections::BTreeMap;
 
@@ -22,12 +23,18 @@ fn by_both_routes(course: &Course) -> [Trajectory; 2] {
     ]
     .map(|motion| {
         let motion = motion.expect("a motion");
-        assert!(motion.is_complete(), "{}: {:?}", motion.end(), motion.reason());
+        assert!(
+            motion.is_complete(),
+            "{}: {:?}",
+            motion.end(),
+            motion.reason()
+        );
         motion
     })
 }
 
-/// A mass strikes a Hertzian stop at every swing: `x'^2/2 + x^2/2 + 2/5 k d^(5/2)` stays what it was, in whatever form the stop is written.
+/// A mass strikes a Hertzian stop at every swing: `x'^2/2 + x^2/2 + 2/5 k d^(5/2)` stays what it
+/// was, in whatever form the stop is written.
 #[test]
 fn a_contact_without_a_step_keeps_its_energy() {
     let forms = [
@@ -42,16 +49,23 @@ fn a_contact_without_a_step_keeps_its_energy() {
     ];
     for form in forms {
         let mut course = follow(&format!("x'' + x + {form} = 0"), -1.0, 20.0);
-        let values = [("k", 1e4), ("d", 0.5), ("n", 1.5)].map(|(name, value)| (Symbol::new(name), value));
+        let values =
+            [("k", 1e4), ("d", 0.5), ("n", 1.5)].map(|(name, value)| (Symbol::new(name), value));
         let needed = course.parameters();
-        course.values = values.into_iter().filter(|(name, _)| needed.contains(name)).collect();
+        course.values = values
+            .into_iter()
+            .filter(|(name, _)| needed.contains(name))
+            .collect();
         for motion in by_both_routes(&course) {
             let mut deepest = 0.0_f64;
             for index in 0..=4000 {
-                let state = motion.at(20.0 * f64::from(index) / 4000.0).expect("a state");
+                let state = motion
+                    .at(20.0 * f64::from(index) / 4000.0)
+                    .expect("a state");
                 let depth = (state[0] - 0.5).max(0.0);
                 deepest = deepest.max(depth);
-                let energy = 0.5 * (state[1] * state[1] + state[0] * state[0]) + 4e3 * depth.powf(2.5);
+                let energy =
+                    0.5 * (state[1] * state[1] + state[0] * state[0]) + 4e3 * depth.powf(2.5);
                 assert!((energy - 0.5).abs() < 1e-10, "{form}: {energy} at {index}");
             }
             assert!(deepest > 0.01, "{form}: {deepest}");
@@ -59,14 +73,18 @@ fn a_contact_without_a_step_keeps_its_energy() {
     }
 }
 
-/// `x'' + sgn(x) abs(x)^n = 0` from 1: the period is `4 sqrt((n + 1)/2) sqrt(pi)/(n + 1) Gamma(1/(n + 1))/Gamma(1/(n + 1) + 1/2)`.
+/// `x'' + sgn(x) abs(x)^n = 0` from 1: the period is `4 sqrt((n + 1)/2) sqrt(pi)/(n + 1)
+/// Gamma(1/(n + 1))/Gamma(1/(n + 1) + 1/2)`.
 #[test]
 fn a_power_of_the_absolute_value_has_its_period() {
     let periods = [
         ("sgn(x)*abs(x)^(3/2)", 6.581_363_388_638_262_5),
         ("x*sqrt(abs(x))", 6.581_363_388_638_262_5),
         ("sgn(x)*sqrt(abs(x))", 5.974_673_601_777_492),
-        ("max(x, 0)^(3/2) - max(-x, 0)^(3/2)", 6.581_363_388_638_262_5),
+        (
+            "max(x, 0)^(3/2) - max(-x, 0)^(3/2)",
+            6.581_363_388_638_262_5,
+        ),
     ];
     for (force, period) in periods {
         for motion in by_both_routes(&follow(&format!("x'' + {force} = 0"), 1.0, 3.0 * period)) {
@@ -98,7 +116,11 @@ fn a_potential_without_a_step_is_followed() {
         );
         motion
     });
-    assert!(largest.difference(&gated) < 1e-9, "{}", largest.difference(&gated));
+    assert!(
+        largest.difference(&gated) < 1e-9,
+        "{}",
+        largest.difference(&gated)
+    );
 }
 
 /// What has no value below zero has none: no root is taken of a size.
@@ -155,32 +177,43 @@ fn in_fixed_steps<const N: usize>(
     steps: u32,
 ) -> [f64; N] {
     let step = until / f64::from(steps);
-    let moved = |state: [f64; N], rates: [f64; N], by: f64| std::array::from_fn(|i| state[i] + by * rates[i]);
+    let moved = |state: [f64; N], rates: [f64; N], by: f64| {
+        std::array::from_fn(|i| state[i] + by * rates[i])
+    };
     for index in 0..steps {
         let time = step * f64::from(index);
         let first = rates(time, state);
         let second = rates(time + 0.5 * step, moved(state, first, 0.5 * step));
         let third = rates(time + 0.5 * step, moved(state, second, 0.5 * step));
         let fourth = rates(time + step, moved(state, third, step));
-        state = std::array::from_fn(|i| state[i] + step / 6.0 * (first[i] + 2.0 * (second[i] + third[i]) + fourth[i]));
+        state = std::array::from_fn(|i| {
+            state[i] + step / 6.0 * (first[i] + 2.0 * (second[i] + third[i]) + fourth[i])
+        });
     }
     state
 }
 
 fn end_of(course: Course) -> Vec<f64> {
     let motion = course.follow().expect("a motion");
-    assert!(motion.is_complete(), "{}: {:?}", motion.end(), motion.reason());
+    assert!(
+        motion.is_complete(),
+        "{}: {:?}",
+        motion.end(),
+        motion.reason()
+    );
     let balance = motion.balance.as_ref().expect("an energy");
     assert!(balance.residual < 1e-10, "{}", balance.residual);
     motion.at(motion.end()).expect("a state")
 }
 
 /// Equal masses exchange their velocities, whatever the law of the contact. One of Hertz lasts
-/// `T = 2 d/v int_0^1 (1 - s^(5/2))^(-1/2) ds`, `v^2/2 = 4/5 K d^(5/2)`, in which the centre of mass moves on by v T/2.
+/// `T = 2 d/v int_0^1 (1 - s^(5/2))^(-1/2) ds`, `v^2/2 = 4/5 K d^(5/2)`, in which the centre of
+/// mass moves on by v T/2.
 #[test]
 fn balls_exchange_their_velocities() {
     // 2/5 Gamma(2/5) Gamma(1/2)/Gamma(9/10).
-    let integral = 0.4 * 2.218_159_543_757_688 * std::f64::consts::PI.sqrt() / 1.068_628_702_119_319;
+    let integral =
+        0.4 * 2.218_159_543_757_688 * std::f64::consts::PI.sqrt() / 1.068_628_702_119_319;
     let duration = 2.0 * integral * (5.0 / 8e4_f64).powf(0.4);
     let forces = [
         ("p", "-K*(p - q + 1)^(3/2)*H(p - q + 1)"),
@@ -202,14 +235,26 @@ fn balls_exchange_their_velocities() {
                 10.0,
             );
             let end = end_of(course);
-            let expected = [0.5 * duration - 1.0, start + 10.0 + 1.0 - 0.5 * duration, 0.0, 1.0];
-            let astray = end.iter().zip(expected).map(|(end, expected)| (end - expected).abs());
-            assert!(astray.fold(0.0, f64::max) < 1e-9, "{potential} from {start}: {end:?}");
+            let expected = [
+                0.5 * duration - 1.0,
+                start + 10.0 + 1.0 - 0.5 * duration,
+                0.0,
+                1.0,
+            ];
+            let astray = end
+                .iter()
+                .zip(expected)
+                .map(|(end, expected)| (end - expected).abs());
+            assert!(
+                astray.fold(0.0, f64::max) < 1e-9,
+                "{potential} from {start}: {end:?}"
+            );
         }
     }
 }
 
-/// Of three balls in a row the last takes the velocity; between two that come from both sides the middle one stays.
+/// Of three balls in a row the last takes the velocity; between two that come from both sides the
+/// middle one stays.
 #[test]
 fn three_balls_hand_their_velocity_on() {
     let follow = |start: &[(&str, f64)]| {
@@ -226,13 +271,19 @@ fn three_balls_hand_their_velocity_on() {
         let end = follow(&[("p", start), ("p'", 1.0), ("r", 2.0)]);
         let astray = end[3..].iter().zip([0.0, 0.0, 1.0]);
         assert!(
-            astray.map(|(end, one)| (end - one).abs()).fold(0.0, f64::max) < 1e-9,
+            astray
+                .map(|(end, one)| (end - one).abs())
+                .fold(0.0, f64::max)
+                < 1e-9,
             "{start}: {end:?}"
         );
         let end = follow(&[("p", start), ("p'", 1.0), ("r", -start), ("r'", -1.0)]);
         let astray = end[3..].iter().zip([-1.0, 0.0, 1.0]);
         assert!(
-            astray.map(|(end, one)| (end - one).abs()).fold(0.0, f64::max) < 1e-9,
+            astray
+                .map(|(end, one)| (end - one).abs())
+                .fold(0.0, f64::max)
+                < 1e-9,
             "{start}: {end:?}"
         );
         assert!(end[1].abs() < 1e-9, "{start}: {end:?}");
@@ -243,7 +294,8 @@ fn three_balls_hand_their_velocity_on() {
     assert!((end[3] + end[4] + end[5] - 1.0).abs() < 1e-9, "{end:?}");
 }
 
-/// A mass on a spring between the two stops of another: one guard for each stop, in the equations of both.
+/// A mass on a spring between the two stops of another: one guard for each stop, in the equations
+/// of both.
 #[test]
 fn a_mass_with_two_stops_takes_the_other_along() {
     let contact = |depth: f64| 1e4 * depth.max(0.0).powf(1.5);
@@ -273,7 +325,10 @@ fn a_mass_with_two_stops_takes_the_other_along() {
                 &start,
                 8.0,
             ));
-            let astray = end.iter().zip(expected).map(|(end, expected)| (end - expected).abs());
+            let astray = end
+                .iter()
+                .zip(expected)
+                .map(|(end, expected)| (end - expected).abs());
             assert!(
                 astray.fold(0.0, f64::max) < 1e-6,
                 "{potential} from {begin}: {end:?} {expected:?}"
@@ -304,23 +359,34 @@ fn a_driven_damper_strikes_its_stops() {
     );
     for motion in by_both_routes(&course) {
         let end = motion.at(12.0).expect("a state");
-        let astray = end.iter().zip(expected).map(|(end, expected)| (end - expected).abs());
+        let astray = end
+            .iter()
+            .zip(expected)
+            .map(|(end, expected)| (end - expected).abs());
         assert!(astray.fold(0.0, f64::max) < 1e-6, "{end:?} {expected:?}");
     }
 }
 
-/// Several corners of one coordinate, one in another, and one in the argument of another: against fixed steps.
+/// Several corners of one coordinate, one in another, and one in the argument of another: against
+/// fixed steps.
 #[test]
 fn several_corners_of_one_coordinate_are_followed() {
     let powers = |x: f64| 1e4 * ((x - 0.3).max(0.0).powf(1.5) - (-x - 0.4).max(0.0).powf(1.5));
-    let sides = |x: f64| 1e4 * (x.abs() - 0.4).max(0.0).powf(1.5).copysign(x) + 0.1 * (x - 0.3).max(0.0);
+    let sides =
+        |x: f64| 1e4 * (x.abs() - 0.4).max(0.0).powf(1.5).copysign(x) + 0.1 * (x - 0.3).max(0.0);
     let forces: [(&str, &dyn Fn(f64) -> f64); 4] = [
-        ("1e4*max(max(x, 0.1) - 0.3, 0)^1.5 - 1e4*max(-x - 0.4, 0)^1.5", &powers),
+        (
+            "1e4*max(max(x, 0.1) - 0.3, 0)^1.5 - 1e4*max(-x - 0.4, 0)^1.5",
+            &powers,
+        ),
         (
             "1e4*(x - 0.3)^1.5*H(2*x - 0.6) - 1e4*(-0.4 - x)^1.5*H(-0.4 - x)",
             &powers,
         ),
-        ("1e4*max(abs(x) - 0.4, 0)^1.5*sgn(x) + 0.1*max(x - 0.3, 0)", &sides),
+        (
+            "1e4*max(abs(x) - 0.4, 0)^1.5*sgn(x) + 0.1*max(x - 0.3, 0)",
+            &sides,
+        ),
         (
             "1e4*(abs(x) - 0.4)^1.5*H(abs(x) - 0.4)*sgn(x) - 0.1*min(0.3 - x, 0)",
             &sides,
@@ -331,7 +397,9 @@ fn several_corners_of_one_coordinate_are_followed() {
         let mut course = follow(&format!("x'' + x + {force} = 0"), 0.2, 4.0);
         course.begin("x'".into(), 1.0).expect("a state");
         let end = end_of(course);
-        let astray = (end[0] - expected[0]).abs().max((end[1] - expected[1]).abs());
+        let astray = (end[0] - expected[0])
+            .abs()
+            .max((end[1] - expected[1]).abs());
         assert!(astray < 1e-6, "{force}: {end:?} {expected:?}");
     }
 }
@@ -354,16 +422,31 @@ fn a_damping_that_begins_with_the_depth_is_followed() {
     for (height, speed) in [(1.0, 1e-5), (0.9, 0.1)] {
         let expected = in_fixed_steps(rates, [height, speed], 1.05, 200_000);
         for damping in damped {
-            let mut course = follow(&format!("x'' + 9.81 - K*max(-x, 0)^1.5 + {damping} = 0"), height, 1.05);
+            let mut course = follow(
+                &format!("x'' + 9.81 - K*max(-x, 0)^1.5 + {damping} = 0"),
+                height,
+                1.05,
+            );
             course.begin("x'".into(), speed).expect("a state");
             let values = [("K", 1e5), ("C", 10.0), ("D", 1e-3)];
-            course.values = values.map(|(name, value)| (Symbol::new(name), value)).into();
+            course.values = values
+                .map(|(name, value)| (Symbol::new(name), value))
+                .into();
             let motion = course.follow().expect("a motion");
             assert!(motion.is_complete(), "{damping}: {:?}", motion.reason());
             let end = motion.at(1.05).expect("a state");
-            let astray = (end[0] - expected[0]).abs().max((end[1] - expected[1]).abs());
-            assert!(astray < 1e-6, "{damping} from {height}, {speed}: {end:?} {expected:?}");
-            assert_eq!(motion.known_until(), None, "{damping} from {height}, {speed}");
+            let astray = (end[0] - expected[0])
+                .abs()
+                .max((end[1] - expected[1]).abs());
+            assert!(
+                astray < 1e-6,
+                "{damping} from {height}, {speed}: {end:?} {expected:?}"
+            );
+            assert_eq!(
+                motion.known_until(),
+                None,
+                "{damping} from {height}, {speed}"
+            );
         }
     }
 }

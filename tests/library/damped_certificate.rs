@@ -1,9 +1,10 @@
-//! Certificates of limit cycles against frequencies of another way: the exact series of van der Pol's equation, whose coefficients are
-//! fractions, to so high an order that what is left out is below the radius; and the judge's Runge-Kutta.
+//! Certificates of limit cycles against frequencies of another way: the exact series of van der
+//! Pol's equation, whose coefficients are fractions, to so high an order that what is left out is
+//! below the radius; and the judge's Runge-Kutta.
 
 use lindstedt::certificate::{
-    CheckError, DampedCertificate, JudgedFormula, NotCertified, NotProved, certify_cycle, certify_cycle_motion,
-    check_damped,
+    CheckError, DampedCertificate, JudgedFormula, NotCertified, NotProved, certify_cycle,
+    certify_cycle_motion, check_damped,
 };
 use lindstedt::exact::{Integer, Rational, from_f64, ratio, to_f64};
 use lindstedt::expr::{Expr, parse_expression};
@@ -29,13 +30,14 @@ fn solved(equation: &str, method: Option<Method>, order: u32) -> (Oscillator, So
 fn certified(equation: &str, order: u32, at: &str) -> DampedCertificate {
     let (oscillator, solution) = solved(equation, None, order);
     let at: Values = at.parse().expect("values");
-    let (certificate, proved) =
-        certify_cycle(&oscillator, &solution, &at).unwrap_or_else(|error| panic!("{equation} at {at:?}: {error}"));
+    let (certificate, proved) = certify_cycle(&oscillator, &solution, &at)
+        .unwrap_or_else(|error| panic!("{equation} at {at:?}: {error}"));
     assert_eq!(check_damped(&certificate), Ok(proved));
     certificate
 }
 
-/// omega of van der Pol's equation, by so many orders of its series; the nearest singularity is at `|mu| = 1.85`.
+/// omega of van der Pol's equation, by so many orders of its series; the nearest singularity is at
+/// `|mu| = 1.85`.
 fn series(mu: &Rational, order: u32) -> Rational {
     let options = Options {
         order: Some(order),
@@ -65,7 +67,11 @@ fn thirty_digits_of_van_der_pol() {
         let certificate = certified(VAN_DER_POL, 2, &format!("mu = {mu}"));
         let truth = series(&mu.parse().expect("a fraction"), order);
         assert_eq!(contains(&certificate, &truth), Ok(true), "mu = {mu}");
-        let known = check_damped(&certificate).expect("a proof").frequency.radius.value();
+        let known = check_damped(&certificate)
+            .expect("a proof")
+            .frequency
+            .radius
+            .value();
         assert!(known < 1e-30, "mu = {mu}: {known}");
     }
 }
@@ -105,15 +111,27 @@ fn the_error_of_a_formula_is_enclosed() {
         .truth;
     let period = std::f64::consts::TAU / truth;
     let count = samples.len() - 1;
-    let wave = |wave: fn(f64) -> f64| -> f64 { samples[..count].iter().map(|(t, x, _)| x * wave(truth * t)).sum() };
+    let wave = |wave: fn(f64) -> f64| -> f64 {
+        samples[..count]
+            .iter()
+            .map(|(t, x, _)| x * wave(truth * t))
+            .sum()
+    };
     let phase = wave(f64::sin).atan2(wave(f64::cos)) / truth;
     let apart = samples[..count].iter().map(|(t, x, _)| {
         let t = (t - phase).rem_euclid(period);
-        ((x - formula.at(t * truth / formula.frequency())).abs(), t, *x)
+        (
+            (x - formula.at(t * truth / formula.frequency())).abs(),
+            t,
+            *x,
+        )
     });
-    let largest = apart.clone().fold(0.0, |most: f64, (apart, ..)| most.max(apart));
+    let largest = apart
+        .clone()
+        .fold(0.0, |most: f64, (apart, ..)| most.max(apart));
     assert!(
-        errors.deviation.lower * 0.999 <= largest + 1e-8 && largest <= errors.deviation.upper + 1e-8,
+        errors.deviation.lower * 0.999 <= largest + 1e-8
+            && largest <= errors.deviation.upper + 1e-8,
         "{errors:?}, {largest}"
     );
     assert!(errors.deviation.upper < 1.01 * errors.deviation.lower);
@@ -136,7 +154,8 @@ fn the_error_of_a_formula_is_enclosed() {
     let turned = proved.formula.expect("a formula");
     assert_eq!(turned.frequency, errors.frequency);
     assert!(
-        turned.deviation.upper < 3.0 * errors.deviation.upper && turned.deviation.lower > errors.deviation.lower / 3.0
+        turned.deviation.upper < 3.0 * errors.deviation.upper
+            && turned.deviation.lower > errors.deviation.lower / 3.0
     );
 }
 
@@ -153,14 +172,18 @@ fn proved_errors_shrink_with_the_power_that_is_left_out() {
     assert!((large / small - 625.2).abs() < 0.1, "{small}, {large}");
     let order = |order: u32| {
         let upper = |mu: &str| {
-            let proved = check_damped(&certified(VAN_DER_POL, order, &format!("mu = {mu}"))).expect("a proof");
+            let proved = check_damped(&certified(VAN_DER_POL, order, &format!("mu = {mu}")))
+                .expect("a proof");
             proved.formula.expect("a formula").frequency.upper
         };
         (upper("1/10") / upper("1/20")).log2()
     };
     for (asked, left_out) in [(2, 4.0), (4, 6.0), (6, 8.0)] {
         let exponent = order(asked);
-        assert!((exponent - left_out).abs() < 0.1, "order {asked}: {exponent}");
+        assert!(
+            (exponent - left_out).abs() < 0.1,
+            "order {asked}: {exponent}"
+        );
     }
 }
 
@@ -174,8 +197,8 @@ fn other_forces_and_dampings() {
     ] {
         let (oscillator, solution) = solved(equation, None, 2);
         let at: Values = at.parse().expect("values");
-        let (certificate, proved) =
-            certify_cycle(&oscillator, &solution, &at).unwrap_or_else(|error| panic!("{equation}: {error}"));
+        let (certificate, proved) = certify_cycle(&oscillator, &solution, &at)
+            .unwrap_or_else(|error| panic!("{equation}: {error}"));
         assert_eq!(certificate.odd, odd, "{equation}");
         let truth = lindstedt::judge(&oscillator, &solution, &at, 0.01)
             .expect("a verdict")
@@ -184,7 +207,10 @@ fn other_forces_and_dampings() {
             (to_f64(&proved.frequency.middle) / truth - 1.0).abs() < 1e-9,
             "{equation}"
         );
-        assert!(proved.frequency.radius.value() < 1e-26, "{equation}: {proved:?}");
+        assert!(
+            proved.frequency.radius.value() < 1e-26,
+            "{equation}: {proved:?}"
+        );
         assert_eq!(check_damped(&certificate), Ok(proved), "{equation}");
     }
 }
@@ -203,16 +229,21 @@ fn the_characteristic_exponent_is_that_of_the_mean_damping() {
     let apart = (&attracts.middle + &repels.middle).abs();
     assert!(attracts.middle.is_negative() && apart < ratio(1, 1_000_000_000).pow(3));
     // -[g]_0 = mu (1 - (a_1^2 + ...)/2), of which the first term is -mu.
-    assert!((to_f64(&attracts.middle) + 0.25).abs() < 0.002, "{attracts:?}");
+    assert!(
+        (to_f64(&attracts.middle) + 0.25).abs() < 0.002,
+        "{attracts:?}"
+    );
 }
 
 #[test]
 fn what_cannot_be_certified_is_refused_with_the_reason() {
     let refused = |equation: &str, at: &str| {
         let (oscillator, solution) = solved(equation, None, 4);
-        certify_cycle(&oscillator, &solution, &at.parse().expect("values")).expect_err("no certificate")
+        certify_cycle(&oscillator, &solution, &at.parse().expect("values"))
+            .expect_err("no certificate")
     };
-    let NotCertified::NotLienard { term, of_velocity } = refused("x'' - mu*(1 - x'^2/3)*x' + x = 0", "mu = 1/10")
+    let NotCertified::NotLienard { term, of_velocity } =
+        refused("x'' - mu*(1 - x'^2/3)*x' + x = 0", "mu = 1/10")
     else {
         panic!("another reason");
     };
@@ -233,7 +264,9 @@ fn what_cannot_be_certified_is_refused_with_the_reason() {
     assert!(
         matches!(
             relaxing,
-            NotCertified::TooManyHarmonics(_) | NotCertified::NotProved { .. } | NotCertified::Motion(_)
+            NotCertified::TooManyHarmonics(_)
+                | NotCertified::NotProved { .. }
+                | NotCertified::Motion(_)
         ),
         "{relaxing:?}"
     );
@@ -258,7 +291,9 @@ fn change(certificate: &mut DampedCertificate, which: u8, place: usize, bit: usi
         5 => certificate.highest = 1 + bit,
         6 => certificate.odd = false,
         7 => certificate.bits += 1,
-        8 => certificate.sines.truncate(2 + place % certificate.sines.len()),
+        8 => certificate
+            .sines
+            .truncate(2 + place % certificate.sines.len()),
         9 => certificate
             .inverse
             .iter_mut()
@@ -311,7 +346,8 @@ fn each_inequality_is_checked() {
         change(&mut certificate);
         check_damped(&certificate).expect_err("a certificate that does not hold")
     };
-    let no_contraction = |error: CheckError| matches!(error, CheckError::NotProved(NotProved::NoContraction(_)));
+    let no_contraction =
+        |error: CheckError| matches!(error, CheckError::NotProved(NotProved::NoContraction(_)));
     // Z1: an inverse that is none, in one column or in all.
     for column in 0..sound.inverse.len() {
         let without = move |certificate: &mut DampedCertificate| {
@@ -323,12 +359,17 @@ fn each_inequality_is_checked() {
         assert!(no_contraction(reason(&without)), "column {column}");
     }
     // Z1, the column of 1/omega alone: its error counts for all, or for nothing.
-    assert!(no_contraction(reason(&|certificate| certificate.sigma = -64)));
+    assert!(no_contraction(reason(
+        &|certificate| certificate.sigma = -64
+    )));
     // Z1 beyond the block: one harmonic in it.
     assert!(no_contraction(reason(&|certificate| {
         certificate.highest = 1;
         certificate.inverse.truncate(2);
-        certificate.inverse.iter_mut().for_each(|row| row.truncate(2));
+        certificate
+            .inverse
+            .iter_mut()
+            .for_each(|row| row.truncate(2));
     })));
     // Y0 and Z2: too far for the curvature of the problem.
     let far = |error: CheckError| {
@@ -349,13 +390,17 @@ fn each_inequality_is_checked() {
         &|certificate| certificate.reciprocal += Integer::from(1) << (certificate.bits - 5)
     )));
     // A harmonic far beyond the block is a part of the defect too.
-    let shaken =
-        |certificate: &mut DampedCertificate| certificate.cosines[41] += Integer::from(1) << (certificate.bits - 20);
+    let shaken = |certificate: &mut DampedCertificate| {
+        certificate.cosines[41] += Integer::from(1) << (certificate.bits - 20)
+    };
     let mut certificate = sound.clone();
     shaken(&mut certificate);
     assert!(matches!(
         check_damped(&certificate),
-        Err(CheckError::ClaimedLess { what: "the radius", .. } | CheckError::NotProved(_))
+        Err(CheckError::ClaimedLess {
+            what: "the radius",
+            ..
+        } | CheckError::NotProved(_))
     ));
     // At rest: every inequality may hold but that of the first harmonic.
     assert!(matches!(
@@ -379,7 +424,10 @@ fn each_inequality_is_checked() {
     // What is claimed.
     assert!(matches!(
         reason(&|certificate| certificate.claim = ratio(1, i64::MAX) * ratio(1, i64::MAX)),
-        CheckError::ClaimedLess { what: "the radius", .. }
+        CheckError::ClaimedLess {
+            what: "the radius",
+            ..
+        }
     ));
     let mut boastful = sound.clone();
     if let Some(formula) = &mut boastful.formula {
@@ -395,14 +443,18 @@ fn each_inequality_is_checked() {
     // The symmetry.
     for spoil in ["x^2", "1/10"] {
         let more = parse_expression(spoil).expect("an expression");
-        let even = |certificate: &mut DampedCertificate| certificate.force = &certificate.force + &more;
+        let even =
+            |certificate: &mut DampedCertificate| certificate.force = &certificate.force + &more;
         assert_eq!(reason(&even), CheckError::NotProved(NotProved::NotOdd));
     }
-    let skew = |certificate: &mut DampedCertificate| certificate.damping = &certificate.damping + &Expr::symbol("x");
+    let skew = |certificate: &mut DampedCertificate| {
+        certificate.damping = &certificate.damping + &Expr::symbol("x")
+    };
     assert_eq!(reason(&skew), CheckError::NotProved(NotProved::NotOdd));
     // Sizes, and the phase.
     for spoil in [
-        (|certificate: &mut DampedCertificate| certificate.inverse.truncate(2)) as fn(&mut DampedCertificate),
+        (|certificate: &mut DampedCertificate| certificate.inverse.truncate(2))
+            as fn(&mut DampedCertificate),
         |certificate| certificate.highest = 100_000,
         |certificate| certificate.bits = 1_000_000,
         |certificate| certificate.sigma = i32::MIN,
@@ -416,7 +468,8 @@ fn each_inequality_is_checked() {
     }
 }
 
-/// Half a period later it is the same cycle: held against a formula at the opposite phase, it would seem to be off by twice the amplitude.
+/// Half a period later it is the same cycle: held against a formula at the opposite phase, it would
+/// seem to be off by twice the amplitude.
 #[test]
 fn a_cycle_begins_at_the_positive_cosine_of_its_first_harmonic() {
     let sound = certified(VAN_DER_POL, 2, "mu = 1/2");
@@ -425,11 +478,25 @@ fn a_cycle_begins_at_the_positive_cosine_of_its_first_harmonic() {
         list.iter_mut().for_each(|units| *units = -&*units);
     }
     // With X and F of the other sign the inverse has one in the row of 1/omega.
-    turned.inverse[0].iter_mut().for_each(|entry| *entry = -&*entry);
-    let reason = |certificate: &DampedCertificate| check_damped(certificate).expect_err("no certificate").to_string();
-    assert!(reason(&turned).contains("no positive cosine"), "{}", reason(&turned));
+    turned.inverse[0]
+        .iter_mut()
+        .for_each(|entry| *entry = -&*entry);
+    let reason = |certificate: &DampedCertificate| {
+        check_damped(certificate)
+            .expect_err("no certificate")
+            .to_string()
+    };
+    assert!(
+        reason(&turned).contains("no positive cosine"),
+        "{}",
+        reason(&turned)
+    );
     turned.formula = None;
-    assert!(reason(&turned).contains("no positive cosine"), "{}", reason(&turned));
+    assert!(
+        reason(&turned).contains("no positive cosine"),
+        "{}",
+        reason(&turned)
+    );
     // The same formula with a negative frequency, or as one of half the frequency.
     let with = |change: fn(&mut JudgedFormula)| {
         let mut other = sound.clone();
@@ -444,7 +511,10 @@ fn a_cycle_begins_at_the_positive_cosine_of_its_first_harmonic() {
     let slow = with(|formula| {
         formula.frequency = formula.frequency.clone() >> 1;
         for list in [&mut formula.coefficients, &mut formula.sines] {
-            *list = list.iter().flat_map(|units| [units.clone(), Integer::zero()]).collect();
+            *list = list
+                .iter()
+                .flat_map(|units| [units.clone(), Integer::zero()])
+                .collect();
         }
     });
     assert!(slow.contains("without a first harmonic"), "{slow}");
@@ -452,7 +522,10 @@ fn a_cycle_begins_at_the_positive_cosine_of_its_first_harmonic() {
     let mut later = sound.clone();
     let formula = later.formula.as_mut().expect("a formula");
     for list in [&mut formula.coefficients, &mut formula.sines] {
-        list.iter_mut().skip(1).step_by(2).for_each(|units| *units = -&*units);
+        list.iter_mut()
+            .skip(1)
+            .step_by(2)
+            .for_each(|units| *units = -&*units);
     }
     assert_eq!(
         check_damped(&later).expect("a proof").formula,
@@ -467,7 +540,9 @@ fn a_cycle_is_proved_where_its_formula_has_no_value() {
     let at: Values = "mu = 3".parse().expect("values");
     let refused = certify_cycle(&oscillator, &solution, &at).expect_err("no formula");
     assert!(
-        refused.help().is_some_and(|help| help.contains("--no-formula")),
+        refused
+            .help()
+            .is_some_and(|help| help.contains("--no-formula")),
         "{refused}"
     );
     let (certificate, proved) = certify_cycle_motion(&oscillator, &solution, &at).expect("a proof");
@@ -478,7 +553,8 @@ fn a_cycle_is_proved_where_its_formula_has_no_value() {
     assert!((period - 8.8591).abs() < 1e-4, "{period}");
 }
 
-/// The law as text gives the numbers to their last digits, or is refused; words are nothing that is proved.
+/// The law as text gives the numbers to their last digits, or is refused; words are nothing that is
+/// proved.
 #[test]
 fn the_law_is_held_against_the_numbers() {
     let sound = certified(VAN_DER_POL, 4, "mu = 1/2");
@@ -495,10 +571,17 @@ fn the_law_is_held_against_the_numbers() {
         ("omega^2 = 1 - mu^2/8 + 23*mu^4/1537", "mu = 1/2"),
         ("omega = 1 - mu^2/8 + 23*mu^4/1536", "mu = 1/2"),
     ] {
-        assert!(matches!(with_law(law, values), Err(CheckError::Malformed(_))), "{law}");
+        assert!(
+            matches!(with_law(law, values), Err(CheckError::Malformed(_))),
+            "{law}"
+        );
     }
     for (law, values, is_held) in [
-        ("omega^2 = 1 - k/2 + 23*mu^4/1536, k = mu^2/4", "mu = 1/2", true),
+        (
+            "omega^2 = 1 - k/2 + 23*mu^4/1536, k = mu^2/4",
+            "mu = 1/2",
+            true,
+        ),
         ("omega^2 = 1 - mu^2/8 + 23*mu^4/1536", "", false),
         ("a perfect formula", "", false),
         ("0 = omega^2 - 1", "", false),

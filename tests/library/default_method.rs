@@ -1,4 +1,5 @@
-//! The method that answers where none is asked for, and the force has no expansion about its equilibrium.
+//! The method that answers where none is asked for, and the force has no expansion about its
+//! equilibrium.
 
 use lindstedt::expr::Expr;
 use lindstedt::method::numbers::evaluate;
@@ -23,12 +24,28 @@ fn a_force_without_an_expansion_is_answered_and_the_answer_says_why_not_as_usual
         ("x'' + x^3 = 0", Method::Exact, "A = 2"),
         ("x'' + sgn(x)/abs(x)^(1/3) = 0", Method::Exact, "A = 2"),
         ("x'' + c*x^(-1/5) = 0", Method::Exact, "A = 1/2, c = 3"),
-        ("x'' + c*sgn(x)*abs(x)^p = 0", Method::Exact, "A = 1, c = 3, p = -2/3"),
-        ("x'' + k*sgn(x)*abs(x)^p = 0", Method::Exact, "A = 1, k = 2, p = 3/2"),
-        ("x'' + x + sgn(x)*sqrt(abs(x)) = 0", Method::Hamiltonian, "A = 1"),
+        (
+            "x'' + c*sgn(x)*abs(x)^p = 0",
+            Method::Exact,
+            "A = 1, c = 3, p = -2/3",
+        ),
+        (
+            "x'' + k*sgn(x)*abs(x)^p = 0",
+            Method::Exact,
+            "A = 1, k = 2, p = 3/2",
+        ),
+        (
+            "x'' + x + sgn(x)*sqrt(abs(x)) = 0",
+            Method::Hamiltonian,
+            "A = 1",
+        ),
         ("x'' + x + H(x) = 0", Method::Exact, "A = 1"),
         ("x'' + tanh(x)^3 = 0", Method::Exact, "A = 1"),
-        ("(1 + x^2)*x'' + x*x'^2 + x^3 = 0", Method::Hamiltonian, "A = 1"),
+        (
+            "(1 + x^2)*x'' + x*x'^2 + x^3 = 0",
+            Method::Hamiltonian,
+            "A = 1",
+        ),
     ] {
         let solution = answered(equation, &Options::default());
         assert_eq!(solution.method, method, "{equation}");
@@ -39,7 +56,12 @@ fn a_force_without_an_expansion_is_answered_and_the_answer_says_why_not_as_usual
         let oscillator = Oscillator::parse(equation).expect(equation);
         let at: Values = at.parse().expect("values");
         let judged = judge(&oscillator, &solution, &at, 0.01).expect(equation);
-        assert_eq!(judged.verdict, Verdict::Pass, "{equation}: {:?}", judged.relative_error);
+        assert_eq!(
+            judged.verdict,
+            Verdict::Pass,
+            "{equation}: {:?}",
+            judged.relative_error
+        );
     }
 }
 
@@ -51,9 +73,18 @@ fn an_order_asks_for_so_many_harmonics() {
         ..Options::default()
     };
     let solution = answered(equation, &options);
-    assert_eq!((solution.method, solution.order), (Method::HarmonicBalance, 3));
+    assert_eq!(
+        (solution.method, solution.order),
+        (Method::HarmonicBalance, 3)
+    );
     let oscillator = Oscillator::parse(equation).expect(equation);
-    let judged = judge(&oscillator, &solution, &"A = 1".parse().expect("a value"), 1e-3).expect(equation);
+    let judged = judge(
+        &oscillator,
+        &solution,
+        &"A = 1".parse().expect("a value"),
+        1e-3,
+    )
+    .expect(equation);
     assert_eq!(judged.verdict, Verdict::Pass);
 }
 
@@ -105,13 +136,18 @@ fn a_letter_may_stand_for_an_exponent() {
         let expected = by_number.law.closed_form().expect("a closed form");
         let at: Values = format!("k = 2, A = 3/2, p = {p}").parse().expect("values");
         let numbers = at.numbers();
-        let [found, expected] = [&form.value, &expected.value].map(|law| law.evaluate(&numbers).expect("a number"));
-        assert!((found / expected - 1.0).abs() < 1e-12, "p = {p}: {found} {expected}");
+        let [found, expected] =
+            [&form.value, &expected.value].map(|law| law.evaluate(&numbers).expect("a number"));
+        assert!(
+            (found / expected - 1.0).abs() < 1e-12,
+            "p = {p}: {found} {expected}"
+        );
     }
 }
 
-/// What quadratic terms do to the frequency comes with the square of the amplitude, as what cubic ones do: beside a linear damping, and
-/// at a resonance, it is in the answer. The truth is the expansion of the undamped motion, in its own amplitude.
+/// What quadratic terms do to the frequency comes with the square of the amplitude, as what cubic
+/// ones do: beside a linear damping, and at a resonance, it is in the answer. The truth is the
+/// expansion of the undamped motion, in its own amplitude.
 #[test]
 fn quadratic_terms_are_not_left_out() {
     let of_first_harmonic = Options {
@@ -143,11 +179,20 @@ fn quadratic_terms_are_not_left_out() {
         let slow = answered(damped, &Options::default());
         assert!(slow.validity.contains(&Note::QuadraticTerms), "{damped}");
         let modulation = slow.modulation.expect(damped);
-        assert_eq!(modulation.phase_rate.expand(), frequency.expand(), "{damped}");
+        assert_eq!(
+            modulation.phase_rate.expand(),
+            frequency.expand(),
+            "{damped}"
+        );
         let resonance = answered(driven, &Options::default());
-        assert!(resonance.validity.contains(&Note::QuadraticTerms), "{driven}");
+        assert!(
+            resonance.validity.contains(&Note::QuadraticTerms),
+            "{driven}"
+        );
         let branches = resonance.response.expect(driven).branches.expect(driven);
-        let at_rest = frequency.substitute("a".into(), &Expr::zero()).expect("a number");
+        let at_rest = frequency
+            .substitute("a".into(), &Expr::zero())
+            .expect("a number");
         assert_eq!(
             (at_rest + Expr::from(&branches.centre)).expand(),
             frequency.expand(),
@@ -160,16 +205,20 @@ fn quadratic_terms_are_not_left_out() {
         "x'' + 2*eps*x' + x + eps*x^2 = eps*F*cos(Omega*t)",
     ] {
         let solution = answered(equation, &Options::default());
-        assert!(solution.validity.contains(&Note::QuadraticTermsLeftOut), "{equation}");
+        assert!(
+            solution.validity.contains(&Note::QuadraticTermsLeftOut),
+            "{equation}"
+        );
     }
 }
 
-/// A quadratic damping and a quadratic force together act as a cubic damping does, whose sign they may turn: the limit cycle in one
-/// of two wells is the unstable one of b < 1. For a small mu it is where the drain along an undamped orbit is zero, b = int x^2 v dx /
-/// int v dx.
+/// A quadratic damping and a quadratic force together act as a cubic damping does, whose sign they
+/// may turn: the limit cycle in one of two wells is the unstable one of b < 1. For a small mu it is
+/// where the drain along an undamped orbit is zero, b = int x^2 v dx / int v dx.
 #[test]
 fn a_limit_cycle_in_a_well_is_the_unstable_one() {
-    let mut oscillator = Oscillator::parse("x'' + mu*(x^2 - b)*x' - x + x^3 = 0").expect("an oscillator");
+    let mut oscillator =
+        Oscillator::parse("x'' + mu*(x^2 - b)*x' - x + x^3 = 0").expect("an oscillator");
     oscillator.about = Some(Expr::one());
     let solution = solve(&oscillator, &Options::default()).expect("slow equations");
     let [cycle] = solution
@@ -183,7 +232,12 @@ fn a_limit_cycle_in_a_well_is_the_unstable_one() {
         cycle.amplitude.evaluate(&numbers).expect("an amplitude")
     };
     let attracts = cycle.attracts_where.expect("a condition");
-    assert!(attracts.evaluate(&[("mu".into(), 0.1)].into()).expect("a number") < 0.0);
+    assert!(
+        attracts
+            .evaluate(&[("mu".into(), 0.1)].into())
+            .expect("a number")
+            < 0.0
+    );
     // x^2 = 1 +- 2 sqrt(e) at the turning points.
     let root = 1e-3;
     let [low, high] = [-1.0, 1.0].map(|side| f64::sqrt(1.0 + side * 2.0 * root));
@@ -192,7 +246,9 @@ fn a_limit_cycle_in_a_well_is_the_unstable_one() {
     for k in 0..64 {
         let angle = std::f64::consts::PI * (f64::from(k) + 0.5) / 64.0;
         let x = middle - half * angle.cos();
-        let speed = (2.0 * root * root - 0.5 * (x * x - 1.0).powi(2)).max(0.0).sqrt();
+        let speed = (2.0 * root * root - 0.5 * (x * x - 1.0).powi(2))
+            .max(0.0)
+            .sqrt();
         drained += x * x * speed * angle.sin();
         fed += speed * angle.sin();
     }
@@ -200,14 +256,17 @@ fn a_limit_cycle_in_a_well_is_the_unstable_one() {
     assert!((found / half - 1.0).abs() < 1e-2, "{found} and {half}");
 }
 
-/// A force that is infinite at rest, and its potential is not: sgn(x)/|x|^(1/3) swings as 1/|x|^(1/3) of a fall that lasts
-/// int_0^A dx/sqrt(3 (A^(2/3) - x^(2/3))) = A^(2/3) pi sqrt(3)/4, a quarter of the period. (x = A sin(u)^3 makes an integral of sin^2 of it.)
+/// A force that is infinite at rest, and its potential is not: sgn(x)/|x|^(1/3) swings as
+/// 1/|x|^(1/3) of a fall that lasts int_0^A dx/sqrt(3 (A^(2/3) - x^(2/3))) = A^(2/3) pi sqrt(3)/4,
+/// a quarter of the period. (x = A sin(u)^3 makes an integral of sin^2 of it.)
 #[test]
 fn a_force_that_is_infinite_at_rest_swings_through() {
     let solution = answered("x'' + sgn(x)/abs(x)^(1/3) = 0", &Options::default());
     let law = &solution.law.closed_form().expect("a closed law").value;
     for amplitude in [1e-3, 1.0, 7.0] {
-        let frequency = law.evaluate(&[("A".into(), amplitude)].into()).expect("a number");
+        let frequency = law
+            .evaluate(&[("A".into(), amplitude)].into())
+            .expect("a number");
         let quarter = amplitude.powf(2.0 / 3.0) * std::f64::consts::PI * f64::sqrt(3.0) / 4.0;
         let truth = std::f64::consts::FRAC_PI_2 / quarter;
         assert!(
@@ -217,8 +276,8 @@ fn a_force_that_is_infinite_at_rest_swings_through() {
     }
 }
 
-/// T of `x'' + s x + k/x = 0` from `x = A`: with `x = A exp(-u^2)` the integrand of the period is smooth, even and falls as `exp(-u^2)`, so
-/// that equal steps give all digits.
+/// T of `x'' + s x + k/x = 0` from `x = A`: with `x = A exp(-u^2)` the integrand of the period is
+/// smooth, even and falls as `exp(-u^2)`, so that equal steps give all digits.
 fn period_through_a_logarithm(s: f64, k: f64, amplitude: f64) -> f64 {
     const STEP: f64 = 0.05;
     let rate = |u: f64| {
@@ -237,7 +296,9 @@ fn period_through_a_logarithm(s: f64, k: f64, amplitude: f64) -> f64 {
 fn a_force_like_one_over_x_has_its_period() {
     let pi = std::f64::consts::PI;
     // Mickens: T = 2 sqrt(2 pi) A.
-    assert!((period_through_a_logarithm(0.0, 1.0, 3.0) / (6.0 * (2.0 * pi).sqrt()) - 1.0).abs() < 1e-14);
+    assert!(
+        (period_through_a_logarithm(0.0, 1.0, 3.0) / (6.0 * (2.0 * pi).sqrt()) - 1.0).abs() < 1e-14
+    );
     for (equation, s, k) in [
         ("x'' + 1/x = 0", 0.0, 1.0),
         ("x*x'' + 3 = 0", 0.0, 3.0),
@@ -283,7 +344,9 @@ fn a_force_like_one_over_x_has_its_period() {
             // No range speaks of a displacement that there is not.
             let ranges = judged.ranges.iter();
             assert!(
-                ranges.clone().all(|range| !range.text.contains("displacement")),
+                ranges
+                    .clone()
+                    .all(|range| !range.text.contains("displacement")),
                 "{equation}"
             );
         }
@@ -304,8 +367,11 @@ fn a_force_that_rounding_makes_uneven_is_taken_through_its_pole() {
             let fallen = u * u + ((9.0 - amplitude * amplitude) / (9.0 - x * x)).ln();
             8.0 * x * u / (2.0 * fallen).sqrt()
         };
-        // At the ends of the steps beside zero the integrand is even, and its value at zero a limit: middles of steps do without.
-        let period: f64 = (0..160).map(|step| 0.05 * rate((f64::from(step) + 0.5) * 0.05)).sum();
+        // At the ends of the steps beside zero the integrand is even, and its value at zero a
+        // limit: middles of steps do without.
+        let period: f64 = (0..160)
+            .map(|step| 0.05 * rate((f64::from(step) + 0.5) * 0.05))
+            .sum();
         let at: Values = format!("A = {amplitude}").parse().expect("a value");
         let judged = judge(&oscillator, &solution, &at, 1e-8).expect(equation);
         let omega = std::f64::consts::TAU / period;
@@ -317,7 +383,8 @@ fn a_force_that_rounding_makes_uneven_is_taken_through_its_pole() {
     }
 }
 
-/// `c_k` of `1/x` along a motion by the midpoint rule, which is exact for the trigonometric polynomial that `cos(k theta)/x` nearly is.
+/// `c_k` of `1/x` along a motion by the midpoint rule, which is exact for the trigonometric
+/// polynomial that `cos(k theta)/x` nearly is.
 fn balance_of_one_over_x(coefficients: &[(usize, f64)], k: usize) -> f64 {
     const POINTS: usize = 4000;
     let theta = |i: usize| std::f64::consts::PI * (i as f64 + 0.5) / POINTS as f64;
@@ -348,7 +415,10 @@ fn methods_of_few_terms_take_one_over_x_where_their_integral_exists() {
             ..Options::default()
         };
         let solution = answered("x'' + k/x = 0", &options);
-        let squared = solution.law.frequency_squared().map(|law| Expr::from(law).to_string());
+        let squared = solution
+            .law
+            .frequency_squared()
+            .map(|law| Expr::from(law).to_string());
         let found = squared.or_else(|| solution.law.closed_form().map(ToString::to_string));
         assert_eq!(found.as_deref(), Some(law), "{method:?}");
         let said = solution
@@ -363,7 +433,10 @@ fn methods_of_few_terms_take_one_over_x_where_their_integral_exists() {
         ..Options::default()
     };
     let oscillator = Oscillator::parse("x'' + k/x = 0").expect("an equation");
-    assert!(matches!(solve(&oscillator, &max_min), Err(Refusal::Unbounded { .. })));
+    assert!(matches!(
+        solve(&oscillator, &max_min),
+        Err(Refusal::Unbounded { .. })
+    ));
     for order in 1..5 {
         let options = Options {
             method: Some(Method::HarmonicBalance),
@@ -373,10 +446,12 @@ fn methods_of_few_terms_take_one_over_x_where_their_integral_exists() {
         let equation = "x'' + 1/x = 0";
         let solution = answered(equation, &options);
         let oscillator = Oscillator::parse(equation).expect(equation);
-        let found = evaluate(&oscillator, &solution, &[("A".into(), 1.0)].into()).expect("a balance");
+        let found =
+            evaluate(&oscillator, &solution, &[("A".into(), 1.0)].into()).expect("a balance");
         let motion = found.motion.expect("a motion");
         let harmonics = (0..order as usize).map(|j| 2 * j + 1);
-        let coefficients: Vec<(usize, f64)> = harmonics.map(|k| (k, motion.cosine(k).mean().0)).collect();
+        let coefficients: Vec<(usize, f64)> =
+            harmonics.map(|k| (k, motion.cosine(k).mean().0)).collect();
         for &(k, a) in &coefficients {
             let inertia = (k * k) as f64 * found.frequency_squared * a;
             let force = balance_of_one_over_x(&coefficients, k);
@@ -398,8 +473,19 @@ fn weaker_powers_go_over_into_one_over_x() {
         let solution = answered(&equation, &Options::default());
         assert_eq!(solution.method, Method::Exact, "{equation}");
         let oscillator = Oscillator::parse(&equation).expect("an equation");
-        let judged = judge(&oscillator, &solution, &"A = 1".parse().expect("a value"), 1e-8).expect("a motion");
-        assert_eq!(judged.verdict, Verdict::Pass, "{equation}: {:?}", judged.relative_error);
+        let judged = judge(
+            &oscillator,
+            &solution,
+            &"A = 1".parse().expect("a value"),
+            1e-8,
+        )
+        .expect("a motion");
+        assert_eq!(
+            judged.verdict,
+            Verdict::Pass,
+            "{equation}: {:?}",
+            judged.relative_error
+        );
         let off = (judged.true_frequency - limit).abs();
         assert!(off < 0.15 * last, "{equation}: {off}");
         last = off;
@@ -449,8 +535,17 @@ fn a_path_through_an_infinite_force_is_neither_drawn_nor_followed() {
     let oscillator = Oscillator::parse(equation).expect(equation);
     let solution = answered(equation, &Options::default());
     assert_eq!(solution.method, Method::Averaging);
-    let error = judge(&oscillator, &solution, &"A = 1".parse().expect("a value"), 0.01).expect_err("no path");
-    assert!(matches!(error, VerificationError::NotFollowed { .. }), "{error}");
+    let error = judge(
+        &oscillator,
+        &solution,
+        &"A = 1".parse().expect("a value"),
+        0.01,
+    )
+    .expect_err("no path");
+    assert!(
+        matches!(error, VerificationError::NotFollowed { .. }),
+        "{error}"
+    );
     let free = Oscillator::parse("x*x'' + 1 = 0").expect("an equation");
     let exact = answered("x*x'' + 1 = 0", &Options::default());
     let error = motions(&free, &exact, &"A = 1".parse().expect("a value")).err();

@@ -1,4 +1,5 @@
-//! Certificates of driven motions against what is known of them otherwise: exact solutions, shooting, damage.
+//! Certificates of driven motions against what is known of them otherwise: exact solutions,
+//! shooting, damage.
 
 use lindstedt::certificate::{
     Certified, CheckError, DampedCertificate, NotCertified, NotProved, certify_driven, check_damped,
@@ -22,7 +23,8 @@ fn certified(equation: &str, at: &str) -> Result<(DampedCertificate, Certified),
         let asked = with_resonance_at(&oscillator, options, &at).expect(equation);
         solve(&oscillator, &asked).expect(equation)
     };
-    // A linear equation has its exact motion by default, and it is the amplitude of slow equations that is certified.
+    // A linear equation has its exact motion by default, and it is the amplitude of slow equations
+    // that is certified.
     let solution = match derived(&Options::default()) {
         exact if exact.method == Method::Exact => derived(&Options {
             method: Some(Method::MultipleScales),
@@ -39,7 +41,12 @@ fn proved(equation: &str, at: &str) -> (DampedCertificate, Certified) {
 
 /// Position and velocity at t = 0 of the approximate motion, in doubles.
 fn start(certificate: &DampedCertificate, omega: f64) -> [f64; 2] {
-    let value = |units: &Integer| to_f64(&Rational::new(units.clone(), Integer::from(1) << certificate.bits));
+    let value = |units: &Integer| {
+        to_f64(&Rational::new(
+            units.clone(),
+            Integer::from(1) << certificate.bits,
+        ))
+    };
     let position = certificate.cosines.iter().map(value).sum();
     let velocity: f64 = certificate
         .sines
@@ -54,7 +61,10 @@ fn start(certificate: &DampedCertificate, omega: f64) -> [f64; 2] {
 #[test]
 fn the_amplitude_of_a_linear_oscillator_is_enclosed() {
     for omega in [ratio(9, 10), ratio(1, 1), ratio(7, 5)] {
-        let (_, proof) = proved("x'' + x'/5 + x - cos(Omega*t)/10 = 0", &format!("Omega = {omega}"));
+        let (_, proof) = proved(
+            "x'' + x'/5 + x - cos(Omega*t)/10 = 0",
+            &format!("Omega = {omega}"),
+        );
         let amplitude = proof.amplitude.expect("an amplitude");
         assert!(amplitude.radius.value() < 1e-30, "{omega}");
         let radius = ratio(1, 1_000_000_000_000_000).pow(2);
@@ -66,16 +76,31 @@ fn the_amplitude_of_a_linear_oscillator_is_enclosed() {
     }
 }
 
-/// The true motion by shooting on the equation as it was typed, which shares nothing with the series: its start, its amplitude, and the
-/// deviation of nothing less than what is proved.
+/// The true motion by shooting on the equation as it was typed, which shares nothing with the
+/// series: its start, its amplitude, and the deviation of nothing less than what is proved.
 #[test]
 fn shooting_finds_what_is_proved() {
     for (equation, at, periods, odd) in [
         (DUFFING, "Omega = 6/5", 1, true),
-        ("x'' + x'/20 + sin(x) - cos(Omega*t)/10 = 0", "Omega = 9/10", 1, true),
+        (
+            "x'' + x'/20 + sin(x) - cos(Omega*t)/10 = 0",
+            "Omega = 9/10",
+            1,
+            true,
+        ),
         // In a letter that stands for a wave of the drive in certificates.
-        ("s'' + s'/20 + sin(s) - cos(Omega*t)/10 = 0", "Omega = 9/10", 1, true),
-        ("x'' + x'/20 + x + x^2/5 - cos(Omega*t)/5 = 0", "Omega = 1/2", 1, false),
+        (
+            "s'' + s'/20 + sin(s) - cos(Omega*t)/10 = 0",
+            "Omega = 9/10",
+            1,
+            true,
+        ),
+        (
+            "x'' + x'/20 + x + x^2/5 - cos(Omega*t)/5 = 0",
+            "Omega = 1/2",
+            1,
+            false,
+        ),
         (
             "x'' + x'/20 + x + x^2/5 - sin(Omega*t + 1/3)/20 = 0",
             "Omega = 1",
@@ -88,7 +113,12 @@ fn shooting_finds_what_is_proved() {
             2,
             true,
         ),
-        ("x'' + x'/50 + x + x^3/10 - 5*cos(Omega*t) = 0", "Omega = 4", 3, true),
+        (
+            "x'' + x'/50 + x + x^3/10 - 5*cos(Omega*t) = 0",
+            "Omega = 4",
+            3,
+            true,
+        ),
         (
             "x'' - (1 - x^2)*x'/10 + x - cos(Omega*t)/10 = 0",
             "Omega = 101/100",
@@ -98,7 +128,10 @@ fn shooting_finds_what_is_proved() {
     ] {
         let (certificate, proof) = proved(equation, at);
         assert_eq!(
-            (certificate.odd, certificate.drive.as_ref().map(|drive| drive.periods)),
+            (
+                certificate.odd,
+                certificate.drive.as_ref().map(|drive| drive.periods)
+            ),
             (odd, Some(periods)),
             "{equation}"
         );
@@ -124,17 +157,29 @@ fn shooting_finds_what_is_proved() {
         let drive = certificate.drive.as_ref().expect("a drive");
         let own = found.harmonic(u32::try_from(drive.harmonic).expect("small"));
         let amplitude = proof.amplitude.as_ref().expect("an amplitude");
-        assert!((to_f64(&amplitude.middle) - own).abs() < 1e-8, "{equation}: {own}");
-        assert_eq!(check_damped(&certificate).as_ref(), Ok(&proof), "{equation}");
+        assert!(
+            (to_f64(&amplitude.middle) - own).abs() < 1e-8,
+            "{equation}: {own}"
+        );
+        assert_eq!(
+            check_damped(&certificate).as_ref(),
+            Ok(&proof),
+            "{equation}"
+        );
         let document = json::damped_certificate(&certificate);
         let text = serde_json::to_string(&document).expect("text");
-        let read: json::DampedCertificateDocument = serde_json::from_str(&text).expect("a document");
-        assert_eq!(read.read().expect("a certificate"), certificate, "{equation}");
+        let read: json::DampedCertificateDocument =
+            serde_json::from_str(&text).expect("a document");
+        assert_eq!(
+            read.read().expect("a certificate"),
+            certificate,
+            "{equation}"
+        );
     }
 }
 
-/// X any number of periods of the drive later is a motion too, and -X where the equation is its own mirror image: whichever of them a file has,
-/// or its formula, the deviation is the same.
+/// X any number of periods of the drive later is a motion too, and -X where the equation is its own
+/// mirror image: whichever of them a file has, or its formula, the deviation is the same.
 #[test]
 fn a_formula_is_held_against_the_nearest_of_equal_motions() {
     // The places at which the deviation is looked at are others.
@@ -147,11 +192,26 @@ fn a_formula_is_held_against_the_nearest_of_equal_motions() {
             "Omega = 101/50",
             2,
         ),
-        ("x'' + x'/50 + x + x^3/10 - 5*cos(Omega*t) = 0", 0, "Omega = 4", 3),
-        ("x'' + x'/20 + x + x^2/5 - cos(Omega*t)/5 = 0", 0, "Omega = 1/2", 1),
+        (
+            "x'' + x'/50 + x + x^3/10 - 5*cos(Omega*t) = 0",
+            0,
+            "Omega = 4",
+            3,
+        ),
+        (
+            "x'' + x'/20 + x + x^2/5 - cos(Omega*t)/5 = 0",
+            0,
+            "Omega = 1/2",
+            1,
+        ),
         (DUFFING, 0, "Omega = 6/5", 1),
         // In one of two wells: the mirror image is in the other, half a period later.
-        ("x'' + x'/10 - x/2 + x^3/2 - cos(Omega*t)/50 = 0", 1, "Omega = 1", 2),
+        (
+            "x'' + x'/10 - x/2 + x^3/2 - cos(Omega*t)/50 = 0",
+            1,
+            "Omega = 1",
+            2,
+        ),
     ] {
         let oscillator = Oscillator::parse(equation)
             .expect(equation)
@@ -170,20 +230,36 @@ fn a_formula_is_held_against_the_nearest_of_equal_motions() {
                 std::f64::consts::TAU * period as f64 / drive.periods as f64,
                 1.0,
             );
-            let again = check_damped(&other).expect("a proof").formula.expect("errors");
-            assert!(is_same(again.deviation.upper, errors.deviation.upper), "{equation}");
-            assert!(is_same(again.deviation.lower, errors.deviation.lower), "{equation}");
+            let again = check_damped(&other)
+                .expect("a proof")
+                .formula
+                .expect("errors");
+            assert!(
+                is_same(again.deviation.upper, errors.deviation.upper),
+                "{equation}"
+            );
+            assert!(
+                is_same(again.deviation.lower, errors.deviation.lower),
+                "{equation}"
+            );
         }
         if !certificate.odd && copies > drive.periods {
             let mut other = certificate.clone();
             turn(&mut other, std::f64::consts::PI, -1.0);
-            let again = check_damped(&other).expect("a proof").formula.expect("errors");
-            assert!(is_same(again.deviation.upper, errors.deviation.upper), "{equation}");
+            let again = check_damped(&other)
+                .expect("a proof")
+                .formula
+                .expect("errors");
+            assert!(
+                is_same(again.deviation.upper, errors.deviation.upper),
+                "{equation}"
+            );
         }
     }
 }
 
-/// Gives the formula another phase and sign, in doubles; its law is left out, and what is claimed of its deviation widened a little.
+/// Gives the formula another phase and sign, in doubles; its law is left out, and what is claimed
+/// of its deviation widened a little.
 fn turn(certificate: &mut DampedCertificate, angle: f64, sign: f64) {
     let bits = certificate.bits;
     let formula = certificate.formula.as_mut().expect("a formula");
@@ -194,12 +270,16 @@ fn turn(certificate: &mut DampedCertificate, angle: f64, sign: f64) {
     };
     let length = formula.coefficients.len().max(formula.sines.len());
     let in_units = |value: f64| {
-        let exact = from_f64(value).expect("finite") * Rational::from_integer(Integer::from(1) << bits);
+        let exact =
+            from_f64(value).expect("finite") * Rational::from_integer(Integer::from(1) << bits);
         exact.floor().to_integer()
     };
     let (mut cosines, mut sines) = (vec![], vec![]);
     for k in 0..length {
-        let (a, b) = (value(formula.coefficients.get(k)), value(formula.sines.get(k)));
+        let (a, b) = (
+            value(formula.coefficients.get(k)),
+            value(formula.sines.get(k)),
+        );
         let (sine, cosine) = (k as f64 * angle).sin_cos();
         cosines.push(in_units(sign * (a * cosine + b * sine)));
         sines.push(in_units(sign * (b * cosine - a * sine)));
@@ -212,13 +292,20 @@ fn turn(certificate: &mut DampedCertificate, angle: f64, sign: f64) {
     formula.amplitude_error = [Rational::zero(), ratio(1, 1)];
 }
 
-/// The displacement as text, at the amplitude and the phase of the steady motion, gives all numbers of the formula.
+/// The displacement as text, at the amplitude and the phase of the steady motion, gives all numbers
+/// of the formula.
 #[test]
 fn the_law_of_a_driven_motion_is_held_against_the_numbers() {
     for (equation, at) in [
         (DUFFING, "Omega = 6/5"),
-        ("x'' + x'/20 + x + x^2/5 - cos(Omega*t)/5 = 0", "Omega = 1/2"),
-        ("x'' + x'/50 + (1 + cos(Omega*t)/5)*x + x^3/10 = 0", "Omega = 101/50"),
+        (
+            "x'' + x'/20 + x + x^2/5 - cos(Omega*t)/5 = 0",
+            "Omega = 1/2",
+        ),
+        (
+            "x'' + x'/50 + (1 + cos(Omega*t)/5)*x + x^3/10 = 0",
+            "Omega = 101/50",
+        ),
     ] {
         let (certificate, proof) = proved(equation, at);
         assert!(proof.law_is_held, "{equation}: {:?}", certificate.formula);
@@ -245,7 +332,8 @@ fn the_error_of_the_formula_is_enclosed() {
     let relative = judged.relative_error.expect("an error").abs();
     assert!(errors.relative.lower - 1e-8 < relative && relative < errors.relative.upper + 1e-8);
     assert!(errors.relative.upper - errors.relative.lower < 1e-15);
-    // The judge's deviation is over the largest displacement, which is that of the motion's start at its largest.
+    // The judge's deviation is over the largest displacement, which is that of the motion's start
+    // at its largest.
     let deviation = judged.max_deviation.expect("a deviation");
     let size = errors.deviation.upper / deviation;
     assert!((size - 2.49462).abs() < 2e-3, "{size}");
@@ -259,9 +347,15 @@ fn what_cannot_be_certified_is_refused_with_the_reason() {
         NotCertified::DrivingFrequency(_)
     ));
     // The slope of a sign is zero, and still it is no term of the position.
-    let friction = refused("x'' + x'/10 + sgn(x')/100 + x - cos(Omega*t)/5 = 0", "Omega = 11/10");
+    let friction = refused(
+        "x'' + x'/10 + sgn(x')/100 + x - cos(Omega*t)/5 = 0",
+        "Omega = 11/10",
+    );
     assert_eq!(friction, NotCertified::NotDriven("sgn(x')/100".to_owned()));
-    let cubic = refused("x'' + x'^3/20 + x + x^3/5 - cos(Omega*t)/5 = 0", "Omega = 1");
+    let cubic = refused(
+        "x'' + x'^3/20 + x + x^3/5 - cos(Omega*t)/5 = 0",
+        "Omega = 1",
+    );
     assert_eq!(cubic, NotCertified::NotDriven("x'^3/20".to_owned()));
 }
 
@@ -279,7 +373,8 @@ fn each_inequality_is_checked() {
         change(&mut certificate);
         check_damped(&certificate).expect_err("a certificate that does not hold")
     };
-    let no_contraction = |error: CheckError| matches!(error, CheckError::NotProved(NotProved::NoContraction(_)));
+    let no_contraction =
+        |error: CheckError| matches!(error, CheckError::NotProved(NotProved::NoContraction(_)));
     for column in 0..sound.inverse.len() {
         assert!(no_contraction(reason(&move |certificate| {
             certificate
@@ -305,8 +400,13 @@ fn each_inequality_is_checked() {
     // A force that is not odd after half a period of the drive, in x or in time.
     for spoil in ["x^2", "1/10", "c^2", "x*c"] {
         let more = parse_expression(spoil).expect("an expression");
-        let even = |certificate: &mut DampedCertificate| certificate.force = &certificate.force + &more;
-        assert_eq!(reason(&even), CheckError::NotProved(NotProved::NotOdd), "{spoil}");
+        let even =
+            |certificate: &mut DampedCertificate| certificate.force = &certificate.force + &more;
+        assert_eq!(
+            reason(&even),
+            CheckError::NotProved(NotProved::NotOdd),
+            "{spoil}"
+        );
     }
     for spoil in [
         (|certificate: &mut DampedCertificate| certificate.sigma = 1) as fn(&mut DampedCertificate),
@@ -336,7 +436,10 @@ fn each_inequality_is_checked() {
     ));
 }
 
-fn with_drive(certificate: &mut DampedCertificate, change: impl FnOnce(&mut lindstedt::certificate::Drive)) {
+fn with_drive(
+    certificate: &mut DampedCertificate,
+    change: impl FnOnce(&mut lindstedt::certificate::Drive),
+) {
     if let Some(drive) = &mut certificate.drive {
         change(drive);
     }

@@ -1,4 +1,5 @@
-//! The integers and fractions of this crate against those of `num-bigint`, from a few digits to several hundred bits.
+//! The integers and fractions of this crate against those of `num-bigint`, from a few digits to
+//! several hundred bits.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::Neg;
@@ -23,14 +24,17 @@ fn number<T: Num + Neg<Output = T> + From<u32>>((negative, digits): &Digits) -> 
 
 fn small_or_long() -> impl Strategy<Value = Digits> {
     // Digits of nothing but ones or noughts are where carries and borrows run far.
-    let digit = prop_oneof![3 => any::<u32>(), 1 => 0..4_u32, 1 => Just(u32::MAX), 1 => Just(1 << 31)];
+    let digit =
+        prop_oneof![3 => any::<u32>(), 1 => 0..4_u32, 1 => Just(u32::MAX), 1 => Just(1 << 31)];
     let long = proptest::collection::vec(digit, 0..12);
     let small = (0..40_u32).prop_map(|digit| vec![digit]);
     (any::<bool>(), prop_oneof![small, long])
 }
 
 fn fraction() -> impl Strategy<Value = (Digits, Digits)> {
-    let nonzero = small_or_long().prop_filter("a denominator", |(_, digits)| digits.iter().any(|digit| *digit != 0));
+    let nonzero = small_or_long().prop_filter("a denominator", |(_, digits)| {
+        digits.iter().any(|digit| *digit != 0)
+    });
     (small_or_long(), nonzero)
 }
 
@@ -59,8 +63,14 @@ fn agree(ours: &Integer, theirs: &BigInt) -> Result<(), TestCaseError> {
 fn agree_as_fractions(ours: &Rational, theirs: &BigRational) -> Result<(), TestCaseError> {
     agree(ours.numer(), theirs.numer())?;
     agree(ours.denom(), theirs.denom())?;
-    prop_assert_eq!(format!("{ours}|{ours:>+50}"), format!("{theirs}|{theirs:>+50}"));
-    prop_assert_eq!(&ours.to_string().parse::<Rational>().expect("a fraction"), ours);
+    prop_assert_eq!(
+        format!("{ours}|{ours:>+50}"),
+        format!("{theirs}|{theirs:>+50}")
+    );
+    prop_assert_eq!(
+        &ours.to_string().parse::<Rational>().expect("a fraction"),
+        ours
+    );
     Ok(())
 }
 
@@ -234,7 +244,8 @@ proptest! {
         is_nearest(&scaled, to_f64(&scaled))?;
     }
 
-    /// Halfway between two doubles, and a little to each side of it, where the size of the double is any.
+    /// Halfway between two doubles, and a little to each side of it, where the size of the double
+    /// is any.
     #[test]
     fn ties_of_doubles(bits in any::<u64>()) {
         let value = f64::from_bits(bits);

@@ -1,5 +1,6 @@
-//! What must hold of every expression: it reads back as it prints, its value survives simplification, its derivative
-//! agrees with differences, and sums and products obey the laws of a ring.
+//! What must hold of every expression: it reads back as it prints, its value survives
+//! simplification, its derivative agrees with differences, and sums and products obey the laws of a
+//! ring.
 
 use std::collections::BTreeMap;
 
@@ -37,15 +38,20 @@ impl Raw {
             Self::Multiply(a, b) => format!("({} * {})", a.text(), b.text()),
             Self::Divide(a, b) => format!("({} / {})", a.text(), b.text()),
             Self::Negate(a) => format!("(-{})", a.text()),
-            Self::Power(a, numerator, denominator) => format!("({}^({numerator}/{denominator}))", a.text()),
+            Self::Power(a, numerator, denominator) => {
+                format!("({}^({numerator}/{denominator}))", a.text())
+            }
             Self::Call(function, a, _) if function.argument_count() == 1 => {
                 format!("{}({})", function.name(), a.text())
             }
-            Self::Call(function, a, b) => format!("{}({}, {})", function.name(), a.text(), b.text()),
+            Self::Call(function, a, b) => {
+                format!("{}({}, {})", function.name(), a.text(), b.text())
+            }
         }
     }
 
-    /// The exact value of a tree without functions and roots; `None` where it divides by zero, and for a letter that has no value.
+    /// The exact value of a tree without functions and roots; `None` where it divides by zero, and
+    /// for a letter that has no value.
     fn exact(&self, point: &BTreeMap<Symbol, Rational>) -> Option<Rational> {
         Some(match self {
             Self::Number(numerator, denominator) => ratio(*numerator, *denominator),
@@ -53,7 +59,9 @@ impl Raw {
             Self::Add(a, b) => a.exact(point)? + b.exact(point)?,
             Self::Subtract(a, b) => a.exact(point)? - b.exact(point)?,
             Self::Multiply(a, b) => a.exact(point)? * b.exact(point)?,
-            Self::Divide(a, b) => a.exact(point)? / Some(b.exact(point)?).filter(|value| !value.is_zero())?,
+            Self::Divide(a, b) => {
+                a.exact(point)? / Some(b.exact(point)?).filter(|value| !value.is_zero())?
+            }
             Self::Negate(a) => -a.exact(point)?,
             Self::Power(_, numerator, denominator) if numerator % denominator != 0 => return None,
             Self::Power(a, numerator, denominator) => {
@@ -68,9 +76,10 @@ impl Raw {
         })
     }
 
-    /// The value in floating point, with the real root of odd degree. Numbers are exact up to the first root or function, as the
-    /// program's are: the sine of 5^12 is wrong altogether for an argument with one wrong digit. `nudge` is by how much, of its
-    /// size, each root and function is moved, to see what their roundings amount to.
+    /// The value in floating point, with the real root of odd degree. Numbers are exact up to the
+    /// first root or function, as the program's are: the sine of 5^12 is wrong altogether for an
+    /// argument with one wrong digit. `nudge` is by how much, of its size, each root and function
+    /// is moved, to see what their roundings amount to.
     fn float(&self, point: &BTreeMap<Symbol, f64>, nudge: f64) -> f64 {
         if let Some(number) = self.exact(&BTreeMap::new()) {
             return to_f64(&number);
@@ -102,7 +111,8 @@ impl Raw {
 
 fn leaf() -> impl Strategy<Value = Raw> {
     prop_oneof![
-        (-6_i64..=6, 1_i64..=4).prop_map(|(numerator, denominator)| Raw::Number(numerator, denominator)),
+        (-6_i64..=6, 1_i64..=4)
+            .prop_map(|(numerator, denominator)| Raw::Number(numerator, denominator)),
         proptest::sample::select(SYMBOLS.to_vec()).prop_map(Raw::Symbol),
     ]
 }
@@ -153,13 +163,22 @@ fn rational_point() -> impl Strategy<Value = BTreeMap<Symbol, Rational>> {
         let values = values
             .into_iter()
             .map(|(numerator, denominator)| ratio(numerator, denominator));
-        SYMBOLS.iter().map(|name| Symbol::new(name)).zip(values).collect()
+        SYMBOLS
+            .iter()
+            .map(|name| Symbol::new(name))
+            .zip(values)
+            .collect()
     })
 }
 
 fn float_point() -> impl Strategy<Value = BTreeMap<Symbol, f64>> {
-    proptest::collection::vec(-2.0..2.0, SYMBOLS.len())
-        .prop_map(|values| SYMBOLS.iter().map(|name| Symbol::new(name)).zip(values).collect())
+    proptest::collection::vec(-2.0..2.0, SYMBOLS.len()).prop_map(|values| {
+        SYMBOLS
+            .iter()
+            .map(|name| Symbol::new(name))
+            .zip(values)
+            .collect()
+    })
 }
 
 fn at(expr: &Expr, point: &BTreeMap<Symbol, Rational>) -> Option<Rational> {
@@ -219,7 +238,8 @@ proptest! {
                 let tolerance = 1e-9 * (1.0 + truth.abs()) + 100.0 * sensitivity;
                 prop_assert!((value - truth).abs() <= tolerance, "{expr} is {value}, not {truth}");
             }
-            // Refused as a whole although a step hides the offending factor, or a term of value zero: both are rare.
+            // Refused as a whole although a step hides the offending factor, or a term of value
+            // zero: both are rare.
             Err(error) => prop_assert!(error.message.contains("no real value") || error.message.contains("division")),
         }
     }
@@ -238,7 +258,8 @@ proptest! {
         let (Some(coarse), Some(fine), Some(finest)) = (difference(2e-4), difference(1e-4), difference(5e-5)) else {
             return Ok(());
         };
-        // Where the three steps disagree there is a kink or a pole, and the difference is no derivative.
+        // Where the three steps disagree there is a kink or a pole, and the difference is no
+        // derivative.
         let (first, second) = ((coarse - fine).abs(), (fine - finest).abs());
         prop_assume!(first < 1e-4 * (1.0 + fine.abs()) && second < 0.5 * first + 1e-7 * (1.0 + fine.abs()));
         let value = slope.evaluate(&point).map_err(|error| TestCaseError::fail(format!("{expr}: {slope}: {error}")))?;

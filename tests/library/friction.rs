@@ -15,7 +15,8 @@ fn with(alpha: f64) -> FrictionStudy {
     study(setup).expect("a study")
 }
 
-/// Every block of numbers in `docs/friction.md` is a section of what the program prints, and none is left out but the question.
+/// Every block of numbers in `docs/friction.md` is a section of what the program prints, and none
+/// is left out but the question.
 #[test]
 fn the_page_says_what_is_computed() {
     let page = include_str!("../../docs/friction.md");
@@ -23,7 +24,10 @@ fn the_page_says_what_is_computed() {
     let sections: Vec<&str> = printed.trim_end().split("\n\n").skip(1).collect();
     assert_eq!(sections.len(), 6);
     for section in sections {
-        assert!(page.contains(&format!("```text\n{section}\n```")), "{section}");
+        assert!(
+            page.contains(&format!("```text\n{section}\n```")),
+            "{section}"
+        );
     }
 }
 
@@ -72,7 +76,10 @@ fn coulomb_stops_and_the_arctangent_creeps_at_the_rate_of_its_linear_equation() 
     for alpha in [1e-3, 0.01, 0.03, 0.032, DEFAULT_ALPHA, 0.2, 0.7] {
         let near_rest = with(alpha).near_rest;
         let (stop, creep) = (near_rest.stop, near_rest.creep);
-        assert!(stop.x.sin().abs() <= alpha && stop.t > 0.0, "{alpha}: {stop:?}");
+        assert!(
+            stop.x.sin().abs() <= alpha && stop.t > 0.0,
+            "{alpha}: {stop:?}"
+        );
         // Another integrator stops it there too.
         let model = Model {
             alpha,
@@ -83,12 +90,16 @@ fn coulomb_stops_and_the_arctangent_creeps_at_the_rate_of_its_linear_equation() 
             duration: stop.t + 20.0,
             ..Settings::default()
         };
-        let judged = simulate(&model, Start::default(), Integrator::RungeKutta, &settings).expect("a motion");
+        let judged = simulate(&model, Start::default(), Integrator::RungeKutta, &settings)
+            .expect("a motion");
         assert!(
             (judged.end_x - stop.x).abs() < 1e-7 && judged.end_velocity == 0.0,
             "{alpha}"
         );
-        let last = judged.turns.iter().find(|turn| (turn.x - judged.end_x).abs() < 1e-12);
+        let last = judged
+            .turns
+            .iter()
+            .find(|turn| (turn.x - judged.end_x).abs() < 1e-12);
         assert!(
             last.is_some_and(|turn| (turn.t - stop.t).abs() < 1e-4),
             "{alpha}: {last:?} {stop:?}"
@@ -113,7 +124,8 @@ fn coulomb_stops_and_the_arctangent_creeps_at_the_rate_of_its_linear_equation() 
     }
 }
 
-/// With much damping inertia does not count, and the formula is the motion, also where sin x is far from x and |x| above alpha.
+/// With much damping inertia does not count, and the formula is the motion, also where sin x is far
+/// from x and |x| above alpha.
 #[test]
 fn a_strong_creep_is_its_formula() {
     for alpha in [0.8, 0.9, 0.95] {
@@ -137,7 +149,8 @@ fn a_strong_creep_is_its_formula() {
         for sample in &creep.samples {
             let (x, _) = judged.path.at(sample.t).expect("a state");
             let formula = sample.formula.expect("a creep");
-            // The rate of the linear equation is 1/c^2 above that without inertia, eight times 3e-4 at the end.
+            // The rate of the linear equation is 1/c^2 above that without inertia, eight times 3e-4
+            // at the end.
             assert!((formula / x - 1.0).abs() < 4e-3, "{alpha}: {formula} {x}");
             assert_eq!(creep.formula(sample.t), sample.formula);
         }
@@ -147,7 +160,8 @@ fn a_strong_creep_is_its_formula() {
     assert_eq!(with(0.02).near_rest.creep.formula(1.0), None);
 }
 
-/// Where Coulomb's law holds the pendulum above a tenth of the first swing, the arctangent still comes to rest: as another integrator says.
+/// Where Coulomb's law holds the pendulum above a tenth of the first swing, the arctangent still
+/// comes to rest: as another integrator says.
 #[test]
 fn a_strong_friction_has_a_rest_time_by_the_arctangent() {
     for alpha in [0.8, 0.9, 0.95] {
@@ -165,13 +179,21 @@ fn a_strong_friction_has_a_rest_time_by_the_arctangent() {
             duration: 200.0,
             ..Settings::default()
         };
-        let judged = simulate(&model, Start::default(), Integrator::RungeKutta, &settings).expect("a motion");
-        let (found, truth) = (times.arctangent.expect("a rest"), judged.rest().time.expect("a rest"));
-        assert!((found / truth - 1.0).abs() < 1e-6, "{alpha}: {found} {truth}");
+        let judged = simulate(&model, Start::default(), Integrator::RungeKutta, &settings)
+            .expect("a motion");
+        let (found, truth) = (
+            times.arctangent.expect("a rest"),
+            judged.rest().time.expect("a rest"),
+        );
+        assert!(
+            (found / truth - 1.0).abs() < 1e-6,
+            "{alpha}: {found} {truth}"
+        );
     }
 }
 
-/// The work of friction in the first cycle is what the energy loses, and nearly that of a harmonic swing.
+/// The work of friction in the first cycle is what the energy loses, and nearly that of a harmonic
+/// swing.
 #[test]
 fn the_missing_work_is_that_of_the_books() {
     let alpha = 0.01;
@@ -186,7 +208,8 @@ fn the_missing_work_is_that_of_the_books() {
         duration: cycle.until,
         ..Settings::default()
     };
-    let motion = simulate(&model, Start::default(), Integrator::Taylor, &settings).expect("a motion");
+    let motion =
+        simulate(&model, Start::default(), Integrator::Taylor, &settings).expect("a motion");
     let turns: Vec<f64> = motion.turns.iter().map(|turn| turn.x).collect();
     let way = (turns[1] + 1.5) + (turns[1] - motion.end_x);
     assert!((-motion.energy().friction / (alpha * way) - cycle.work_share).abs() < 1e-6);
@@ -200,7 +223,10 @@ fn the_missing_work_is_that_of_the_books() {
         ..FrictionSetup::default()
     });
     let small = small.expect("a study").near_rest.first_cycle;
-    assert!((small.work_share / work_share(0.2) - 1.0).abs() < 1e-3, "{small:?}");
+    assert!(
+        (small.work_share / work_share(0.2) - 1.0).abs() < 1e-3,
+        "{small:?}"
+    );
 }
 
 #[test]
@@ -214,8 +240,16 @@ fn wrong_numbers_get_their_message() {
         (&["--amplitude", "0"], 1, "below pi"),
         (&["--amplitude", "3.2"], 1, "below pi"),
         (&["--amplitude", "inf"], 1, "below pi"),
-        (&["--amplitude", "0.04"], 1, "holds the pendulum where it is released"),
-        (&["--amplitude", "3.13"], 1, "holds the pendulum where it is released"),
+        (
+            &["--amplitude", "0.04"],
+            1,
+            "holds the pendulum where it is released",
+        ),
+        (
+            &["--amplitude", "3.13"],
+            1,
+            "holds the pendulum where it is released",
+        ),
         (&["--speed", "inf"], 1, "finite number"),
         (&["--speed", "x"], 2, "--speed"),
         (&["--tolerance", "0.1"], 2, "no verdict"),
@@ -244,7 +278,10 @@ fn the_table_has_a_row_for_every_speed() {
     let table = friction::csv(&study(setup).expect("a study"));
     let lines: Vec<&str> = table.lines().collect();
     assert_eq!(lines.len(), 2 + 11 + 3);
-    assert_eq!(lines[1], "speed,sign,arctangent,error,printed_value,printed_error");
+    assert_eq!(
+        lines[1],
+        "speed,sign,arctangent,error,printed_value,printed_error"
+    );
     assert!(lines[2].ends_with(",-0.99923,0.07667"), "{}", lines[2]);
     assert_eq!(lines[13], "0.01,1,0.5,50,,");
     assert_eq!(lines[15], "0,0,0,0,,");

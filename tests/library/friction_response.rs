@@ -1,4 +1,5 @@
-//! Steady states under dry friction against Den Hartog's closed form, simulation piece by piece, and differences of its map.
+//! Steady states under dry friction against Den Hartog's closed form, simulation piece by piece,
+//! and differences of its map.
 
 use lindstedt::response::continuation::BranchEnd;
 use lindstedt::response::{Point, Question, Response, respond};
@@ -19,8 +20,14 @@ fn points(response: &Response) -> impl Iterator<Item = &Point> {
     response.branches.iter().flat_map(|branch| &branch.points)
 }
 
-/// Position and velocity after a period, by the simulation that takes every term of `sgn` at its events.
-fn after_a_period(equation: &str, numbers: &[(&str, f64)], start: [f64; 2], period: f64) -> [f64; 2] {
+/// Position and velocity after a period, by the simulation that takes every term of `sgn` at its
+/// events.
+fn after_a_period(
+    equation: &str,
+    numbers: &[(&str, f64)],
+    start: [f64; 2],
+    period: f64,
+) -> [f64; 2] {
     let mut course = Course::of_equation(&Oscillator::parse(equation).expect(equation));
     course.values = numbers
         .iter()
@@ -29,11 +36,16 @@ fn after_a_period(equation: &str, numbers: &[(&str, f64)], start: [f64; 2], peri
     course.begin("x".into(), start[0]).expect("a state");
     course.begin("x'".into(), start[1]).expect("a state");
     (course.duration, course.tolerance) = (period, 1e-12);
-    let state = course.follow().expect("a motion").at(period).expect("a state");
+    let state = course
+        .follow()
+        .expect("a motion")
+        .at(period)
+        .expect("a state");
     [state[0], state[1]]
 }
 
-/// J. P. Den Hartog, *Trans. ASME* 53 (1931) APM-107: the largest displacement of motions that do not stop, with r = Omega.
+/// J. P. Den Hartog, *Trans. ASME* 53 (1931) APM-107: the largest displacement of motions that do
+/// not stop, with r = Omega.
 #[test]
 fn motions_that_do_not_stop_are_those_of_den_hartog() {
     let found = response(
@@ -53,20 +65,37 @@ fn motions_that_do_not_stop_are_those_of_den_hartog() {
         let angle = std::f64::consts::PI / r;
         let friction = angle.sin() / (r * (1.0 + angle.cos()));
         let peak = (response.powi(2) - (0.2 * friction).powi(2)).sqrt();
-        assert!((point.peak / peak - 1.0).abs() < 2e-3, "{r}: {} {peak}", point.peak);
+        assert!(
+            (point.peak / peak - 1.0).abs() < 2e-3,
+            "{r}: {} {peak}",
+            point.peak
+        );
         assert_eq!(point.stable, Some(true));
     }
 }
 
-/// The multipliers are the eigenvalues of the map of a period, its derivatives by differences of the simulation.
+/// The multipliers are the eigenvalues of the map of a period, its derivatives by differences of
+/// the simulation.
 #[test]
 fn multipliers_across_a_jump_are_those_of_the_map() {
     for (equation, range) in [
-        ("x'' + x'/10 + x + x^3/5 + alpha*sgn(x') = F*cos(Omega*t)", [1.3, 1.8]),
-        ("x'' + x'/10 + x + alpha*x*H(x') = F*cos(Omega*t)", [1.4, 1.8]),
-        ("x'' + x'/10 + x + alpha*sgn(x' - 1/10) = F*cos(Omega*t)", [1.4, 1.8]),
+        (
+            "x'' + x'/10 + x + x^3/5 + alpha*sgn(x') = F*cos(Omega*t)",
+            [1.3, 1.8],
+        ),
+        (
+            "x'' + x'/10 + x + alpha*x*H(x') = F*cos(Omega*t)",
+            [1.4, 1.8],
+        ),
+        (
+            "x'' + x'/10 + x + alpha*sgn(x' - 1/10) = F*cos(Omega*t)",
+            [1.4, 1.8],
+        ),
         // A step in place, a slanted line, two velocities, place and velocity: by the map alone.
-        ("x'' + x'/10 + x + alpha*sgn(x) = F*cos(Omega*t)", [1.5, 1.8]),
+        (
+            "x'' + x'/10 + x + alpha*sgn(x) = F*cos(Omega*t)",
+            [1.5, 1.8],
+        ),
         (
             "x'' + x'/10 + x + alpha*H(x' + x/2 - 1/10)*x^2 = F*cos(Omega*t)",
             [1.5, 1.8],
@@ -97,13 +126,19 @@ fn multipliers_across_a_jump_are_those_of_the_map() {
             const STEP: f64 = 1e-4;
             let slope = |to: [f64; 2], from: [f64; 2]| {
                 let (to, from) = (map(to), map(from));
-                [(to[0] - from[0]) / (2.0 * STEP), (to[1] - from[1]) / (2.0 * STEP)]
+                [
+                    (to[0] - from[0]) / (2.0 * STEP),
+                    (to[1] - from[1]) / (2.0 * STEP),
+                ]
             };
             let by_x = slope([x + STEP, v], [x - STEP, v]);
             let by_v = slope([x, v + STEP], [x, v - STEP]);
             let (trace, determinant) = (by_x[0] + by_v[1], by_x[0] * by_v[1] - by_v[0] * by_x[1]);
             let [one, other] = point.multipliers.expect("multipliers");
-            assert!(((one + other).re - trace).abs() < 1e-3, "{equation}: {point:?} {trace}");
+            assert!(
+                ((one + other).re - trace).abs() < 1e-3,
+                "{equation}: {point:?} {trace}"
+            );
             assert!(
                 ((one * other).re - determinant).abs() < 1e-3,
                 "{equation}: {point:?} {determinant}"
@@ -114,7 +149,8 @@ fn multipliers_across_a_jump_are_those_of_the_map() {
     }
 }
 
-/// What sticks forgets: a multiplier is zero, and a simulation from beside it is on the motion after a stop.
+/// What sticks forgets: a multiplier is zero, and a simulation from beside it is on the motion
+/// after a stop.
 #[test]
 fn a_motion_that_sticks_has_a_multiplier_of_zero() {
     use lindstedt::numeric::ode::Options;
@@ -126,7 +162,14 @@ fn a_motion_that_sticks_has_a_multiplier_of_zero() {
     let (k, period) = (0.5, 4.0 * std::f64::consts::PI);
     let mut start = [0.5, 0.0];
     for _ in 0..6 {
-        let course = follow(&driven, start, k, Until::Time(period), &Options::with_tolerance(1e-11)).expect("a motion");
+        let course = follow(
+            &driven,
+            start,
+            k,
+            Until::Time(period),
+            &Options::with_tolerance(1e-11),
+        )
+        .expect("a motion");
         let [x, v, a, c, b, d] = course.end;
         assert!((a * d - b * c).abs() < 1e-12);
         let expected = after_a_period("x'' + x + 3/5*sgn(x') = cos(t/2)", &[], start, period);
@@ -138,8 +181,9 @@ fn a_motion_that_sticks_has_a_multiplier_of_zero() {
     }
 }
 
-/// A motion under dry friction alone that does not stop, `x = alpha + V F cos(W t) + ...` down from one turning point to the other: the largest
-/// displacement X, and W^2 X - alpha, which is positive as long as it does not rest at the turn (Den Hartog, as above).
+/// A motion under dry friction alone that does not stop, `x = alpha + V F cos(W t) + ...` down from
+/// one turning point to the other: the largest displacement X, and W^2 X - alpha, which is positive
+/// as long as it does not rest at the turn (Den Hartog, as above).
 fn without_a_stop(r: f64, alpha: f64) -> (f64, f64) {
     let response = 1.0 / (1.0 - r * r);
     let friction = (0.5 * std::f64::consts::PI / r).tan() / r;
@@ -147,13 +191,19 @@ fn without_a_stop(r: f64, alpha: f64) -> (f64, f64) {
     (peak, r * r * peak - alpha)
 }
 
-/// Below the frequency at which Den Hartog's motion would rest at its turns the branch goes on with motions that stick: each the fixed point
-/// of the simulation that knows nothing of the branch, with a multiplier of zero.
+/// Below the frequency at which Den Hartog's motion would rest at its turns the branch goes on with
+/// motions that stick: each the fixed point of the simulation that knows nothing of the branch,
+/// with a multiplier of zero.
 #[test]
 fn a_branch_goes_on_where_the_motion_begins_to_stick() {
     let equation = "x'' + x + alpha*sgn(x') = F*cos(Omega*t)";
     let found = response(equation, [0.35, 0.85], "F = 1, alpha = 1/2", 24);
-    assert_eq!((found.branches.len(), found.unjudged), (1, 0), "{:?}", found.branches);
+    assert_eq!(
+        (found.branches.len(), found.unjudged),
+        (1, 0),
+        "{:?}",
+        found.branches
+    );
     let (mut low, mut high) = (0.5, 0.7);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
@@ -219,7 +269,10 @@ fn a_branch_ends_where_friction_bears_the_drive() {
         .find(|(end, _)| *end == BranchEnd::Held)
         .and_then(|(_, point)| *point);
     let last = held.expect("an end at rest");
-    assert!((0.5..0.52).contains(&last.parameter) && last.stuck > 0.8, "{last:?}");
+    assert!(
+        (0.5..0.52).contains(&last.parameter) && last.stuck > 0.8,
+        "{last:?}"
+    );
     assert!(
         branch
             .points
@@ -228,30 +281,41 @@ fn a_branch_ends_where_friction_bears_the_drive() {
     );
 }
 
-/// Dry friction that damps and a damper that feeds: a cycle that repels, in closed form from one turn to the next, `X = c (q + 1)/(q - 1)` with
-/// `q = e^(pi/sqrt 3)` and the multiplier q^2.
+/// Dry friction that damps and a damper that feeds: a cycle that repels, in closed form from one
+/// turn to the next, `X = c (q + 1)/(q - 1)` with `q = e^(pi/sqrt 3)` and the multiplier q^2.
 #[test]
 fn a_cycle_across_a_jump_is_that_of_its_half_swings() {
-    let question = Question::new("x'' + c*sgn(x') - x' + x = 0", "c", [0.1, 1.0], "").expect("a question");
+    let question =
+        Question::new("x'' + c*sgn(x') - x' + x = 0", "c", [0.1, 1.0], "").expect("a question");
     let found = respond(&question).expect("a response");
     assert!(found.by_map && found.branches.len() == 1 && found.unjudged == 0);
     let growth = (std::f64::consts::PI / 3.0_f64.sqrt()).exp();
     for point in points(&found) {
         let turn = point.parameter * (growth + 1.0) / (growth - 1.0);
-        assert!((point.start[0] / turn - 1.0).abs() < 1e-8, "{point:?} {turn}");
+        assert!(
+            (point.start[0] / turn - 1.0).abs() < 1e-8,
+            "{point:?} {turn}"
+        );
         let multiplier = point.multipliers.expect("multipliers")[0].re;
-        assert!((multiplier / growth.powi(2) - 1.0).abs() < 1e-6, "{multiplier}");
-        assert!((point.frequency / 0.75_f64.sqrt() - 1.0).abs() < 1e-9 && point.stable == Some(false));
+        assert!(
+            (multiplier / growth.powi(2) - 1.0).abs() < 1e-6,
+            "{multiplier}"
+        );
+        assert!(
+            (point.frequency / 0.75_f64.sqrt() - 1.0).abs() < 1e-9 && point.stable == Some(false)
+        );
     }
 }
 
-/// A mass on a belt whose friction falls with the speed of sliding: it sticks and slips, with a multiplier of zero, until the belt is fast
-/// enough; beside it a cycle that only slips repels, born from rest where the friction falls no faster than the damper bears.
+/// A mass on a belt whose friction falls with the speed of sliding: it sticks and slips, with a
+/// multiplier of zero, until the belt is fast enough; beside it a cycle that only slips repels,
+/// born from rest where the friction falls no faster than the damper bears.
 #[test]
 fn a_mass_on_a_belt_sticks_and_slips() {
     let friction = "3/10*sgn(x' - v)*(1 + exp(-10*abs(x' - v))/2)";
     let equation = format!("x'' + x'/50 + x + {friction} = 0");
-    let found = respond(&Question::new(&equation, "v", [0.1, 1.0], "").expect("a question")).expect("a response");
+    let found = respond(&Question::new(&equation, "v", [0.1, 1.0], "").expect("a question"))
+        .expect("a response");
     assert_eq!(
         (found.branches.len(), found.verdict),
         (2, Verdict::Pass),
@@ -260,7 +324,12 @@ fn a_mass_on_a_belt_sticks_and_slips() {
     );
     for (index, branch) in found.branches.iter().enumerate() {
         let sticks = branch.points[branch.points.len() / 2].stuck > 0.0;
-        for point in branch.points.iter().step_by(25).filter(|point| point.peak > 1e-3) {
+        for point in branch
+            .points
+            .iter()
+            .step_by(25)
+            .filter(|point| point.peak > 1e-3)
+        {
             assert_eq!(
                 (point.stuck > 0.0, point.stable),
                 (sticks, Some(sticks)),
@@ -273,13 +342,20 @@ fn a_mass_on_a_belt_sticks_and_slips() {
                 "{point:?} {back:?}"
             );
             if sticks {
-                assert!(point.multipliers.expect("multipliers")[0].norm() < 1e-8, "{point:?}");
+                assert!(
+                    point.multipliers.expect("multipliers")[0].norm() < 1e-8,
+                    "{point:?}"
+                );
             }
         }
     }
     // 1/50 = (3/10) 5 e^(-10 v).
     let born = 0.1 * (0.3_f64 * 5.0 * 50.0).ln();
-    let hopf: Vec<f64> = found.bifurcations.iter().map(|found| found.parameter).collect();
+    let hopf: Vec<f64> = found
+        .bifurcations
+        .iter()
+        .map(|found| found.parameter)
+        .collect();
     assert!(
         hopf.iter().any(|parameter| (parameter - born).abs() < 1e-6),
         "{hopf:?} {born}"

@@ -1,7 +1,8 @@
 //! Whatever is typed is answered or refused: no panic, from text to printed result.
 //!
-//! `cargo test` runs a few hundred inputs; `LINDSTEDT_FUZZ_CASES=500000 cargo test --release --test fuzz` runs half a million of
-//! either kind.
+//! `cargo test` runs a few hundred inputs;
+//! `LINDSTEDT_FUZZ_CASES=500000 cargo test --release --test fuzz` runs half a million of either
+//! kind.
 
 use lindstedt::Oscillator;
 use lindstedt::Values;
@@ -23,9 +24,10 @@ fn cases() -> u32 {
 /// Pieces of equations, right and wrong, in any order.
 fn pieces() -> impl Strategy<Value = String> {
     let piece = prop::sample::select(vec![
-        "x", "x'", "x''", "t", "eps", "k", "mu", "A", "pi", "y''", "0", "1", "2", "1/3", "0.5", "1e3", "1e-300", "9",
-        "+", "-", "*", "/", "^", "**", "(", ")", "(", ")", "sin(", "cos(", "exp(", "log(", "sqrt(", "abs(", "sgn(",
-        "H(", "max(", ",", "=", "=0", " ", "^2", "^3", "^(1/3)", "''", "²", "\u{0}",
+        "x", "x'", "x''", "t", "eps", "k", "mu", "A", "pi", "y''", "0", "1", "2", "1/3", "0.5",
+        "1e3", "1e-300", "9", "+", "-", "*", "/", "^", "**", "(", ")", "(", ")", "sin(", "cos(",
+        "exp(", "log(", "sqrt(", "abs(", "sgn(", "H(", "max(", ",", "=", "=0", " ", "^2", "^3",
+        "^(1/3)", "''", "²", "\u{0}",
     ]);
     prop::collection::vec(piece, 0..24).prop_map(|pieces| pieces.concat())
 }
@@ -43,7 +45,10 @@ fn equations() -> impl Strategy<Value = String> {
             (inner.clone(), inner.clone()).prop_map(|(a, b)| format!("({a} - {b})")),
             (inner.clone(), inner.clone()).prop_map(|(a, b)| format!("({a})/({b})")),
             (inner.clone(), 0..5_u32).prop_map(|(a, n)| format!("({a})^{n}")),
-            (inner.clone(), prop::sample::select(vec!["1/2", "-1", "3/2", "1/3"]))
+            (
+                inner.clone(),
+                prop::sample::select(vec!["1/2", "-1", "3/2", "1/3"])
+            )
                 .prop_map(|(a, n)| format!("({a})^({n})")),
             (
                 prop::sample::select(vec![
@@ -54,8 +59,9 @@ fn equations() -> impl Strategy<Value = String> {
                 .prop_map(|(name, a)| format!("{name}({a})")),
         ]
     });
-    (force, prop::bool::ANY)
-        .prop_map(|(force, linear)| format!("x'' + {}{force} = 0", if linear { "x + eps*" } else { "" }))
+    (force, prop::bool::ANY).prop_map(|(force, linear)| {
+        format!("x'' + {}{force} = 0", if linear { "x + eps*" } else { "" })
+    })
 }
 
 /// The whole way, from text to every export.
@@ -64,7 +70,10 @@ fn answer(equation: &str) {
         return;
     };
     for method in Method::ALL {
-        for amplitude in [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic] {
+        for amplitude in [
+            AmplitudeConvention::Initial,
+            AmplitudeConvention::FirstHarmonic,
+        ] {
             let options = Options {
                 method: Some(method),
                 order: Some(2),
@@ -79,7 +88,10 @@ fn answer(equation: &str) {
                     let read = json::read_solution(&written).expect("what is written can be read");
                     assert_eq!(json::solution(&read, None), document);
                     assert!(!text::solution(&solution, None, 0.01).is_empty());
-                    assert!(!text::steps(&solution).is_empty() && !latex::solution(&solution, None).is_empty());
+                    assert!(
+                        !text::steps(&solution).is_empty()
+                            && !latex::solution(&solution, None).is_empty()
+                    );
                 }
             }
         }
@@ -93,7 +105,9 @@ fn compared(equation: &str, amplitude: &str) {
     };
     let mut values = Values::default();
     for name in &oscillator.parameters {
-        values.insert(*name, "1".parse().expect("a number")).expect("a value");
+        values
+            .insert(*name, "1".parse().expect("a number"))
+            .expect("a value");
     }
     values
         .insert("A".into(), amplitude.parse().expect("a number"))
@@ -103,7 +117,10 @@ fn compared(equation: &str, amplitude: &str) {
     }
     if let Ok(table) = compare(&oscillator, &values, None, 0.01) {
         assert!(!text::comparison(&table, 80).is_empty() && !latex::comparison(&table).is_empty());
-        assert_eq!(json::comparison(&table).equation, table.equation.to_string());
+        assert_eq!(
+            json::comparison(&table).equation,
+            table.equation.to_string()
+        );
     }
 }
 

@@ -36,34 +36,47 @@ fn number(text: &str) -> Rational {
     Rational::new(digits, Integer::from(10).pow(fraction.len() as u32))
 }
 
-/// Where the true motion takes for ever: on the separatrix, real or not. The pendulum stands upright at pi; a hardening spring has
-/// its separatrix at `eps A^2 = -1`; `x + x^2` lets go of what starts at 1/2.
+/// Where the true motion takes for ever: on the separatrix, real or not. The pendulum stands
+/// upright at pi; a hardening spring has its separatrix at `eps A^2 = -1`; `x + x^2` lets go of
+/// what starts at 1/2.
 #[test]
 fn conservative_motions_are_singular_on_their_separatrix() {
     let pi = number("3.14159265358979323846264338327950288419716939937510");
     let cases = [
         ("x'' + sin(x) = 0", 80, "A^2", &pi * &pi, 1e-12),
         ("x'' + x + eps*x^3 = 0", 40, "eps*A^2", ratio(-1, 1), 1e-10),
-        ("x'' + k*x + eps*x^3 = 0", 40, "eps*A^2/omega0^2", ratio(-1, 1), 1e-10),
+        (
+            "x'' + k*x + eps*x^3 = 0",
+            40,
+            "eps*A^2/omega0^2",
+            ratio(-1, 1),
+            1e-10,
+        ),
         ("x'' + x + x^2 = 0", 40, "A", ratio(1, 2), 1e-12),
     ];
     for (equation, order, variable, place, precision) in cases {
         let found = found(equation, order);
         assert_eq!(found.variable_in_words(), variable, "{equation}");
         let [real, imaginary] = &found.nearest.place;
-        assert!(holds(real, &place) && real.error < precision, "{equation}: {found:?}");
+        assert!(
+            holds(real, &place) && real.error < precision,
+            "{equation}: {found:?}"
+        );
         assert_eq!(imaginary.value, ratio(0, 1), "{equation}: {found:?}");
         // The period grows like a logarithm there.
         let exponent = found.nearest.exponent.as_ref().expect("a logarithm");
         assert_eq!(exponent.value, ratio(0, 1), "{equation}: {found:?}");
     }
-    let (symbol, radius) = found("x'' + sin(x) = 0", 80).in_symbol().expect("the amplitude alone");
+    let (symbol, radius) = found("x'' + sin(x) = 0", 80)
+        .in_symbol()
+        .expect("the amplitude alone");
     assert_eq!(symbol, Symbol::new("A"));
     assert!(holds(&radius, &pi), "{radius:?}");
 }
 
-/// If omega^2 itself has a zero, the motion takes for ever, and the series converges beyond. Kepler's radial motion has
-/// `omega^2 = (1 + 2 A)^3/(1 + A)^6`, by its third law; in a field `1 - 1/x^2` the motion meets its singular place at A = -1 as well.
+/// If omega^2 itself has a zero, the motion takes for ever, and the series converges beyond.
+/// Kepler's radial motion has `omega^2 = (1 + 2 A)^3/(1 + A)^6`, by its third law; in a field
+/// `1 - 1/x^2` the motion meets its singular place at A = -1 as well.
 #[test]
 fn zeros_of_the_frequency_are_no_singularities() {
     let mut said = 0;
@@ -75,34 +88,53 @@ fn zeros_of_the_frequency_are_no_singularities() {
     ] {
         for order in orders {
             let solution = frequency(equation, order);
-            assert!(converges_everywhere(&solution).is_none(), "{equation} {order}");
+            assert!(
+                converges_everywhere(&solution).is_none(),
+                "{equation} {order}"
+            );
             if let Some(found) = converges(&solution) {
                 said += 1;
                 let one = ratio(1, 1);
-                assert!(holds(&found.nearest.radius, &one), "{equation} {order}: {found:?}");
+                assert!(
+                    holds(&found.nearest.radius, &one),
+                    "{equation} {order}: {found:?}"
+                );
             }
         }
     }
     assert!(said >= 4, "{said}");
 }
 
-/// Morse's oscillator released from rest at A: `omega^2 = 1 - (1 - exp(-A))^2`, entire, with zeros at `-log 2 + 2 pi i k`. Where the
-/// small parameter changes the linear force alone, omega^2 ends.
+/// Morse's oscillator released from rest at A: `omega^2 = 1 - (1 - exp(-A))^2`, entire, with zeros
+/// at `-log 2 + 2 pi i k`. Where the small parameter changes the linear force alone, omega^2 ends.
 #[test]
 fn a_series_without_a_singularity_says_so() {
     for order in [24, 32, 48] {
         let solution = frequency("x'' + exp(-x) - exp(-2*x) = 0", order);
         assert_eq!(converges(&solution), None, "{order}");
-        let note = converges_everywhere(&solution).expect("an entire function").to_string();
-        assert!(note.starts_with("the series converges everywhere"), "{note}");
+        let note = converges_everywhere(&solution)
+            .expect("an entire function")
+            .to_string();
+        assert!(
+            note.starts_with("the series converges everywhere"),
+            "{note}"
+        );
     }
     let linear = frequency("x'' + x + eps*x = 0", 30);
     assert_eq!(converges(&linear), None);
     let note = converges_everywhere(&linear).expect("an end").to_string();
     assert!(note.contains("omega^2 ends with eps,"), "{note}");
     // What has a singularity does not converge everywhere.
-    for (equation, order) in [("x'' + sin(x) = 0", 60), ("x'' + x + x^2 = 0", 24), (VAN_DER_POL, 60)] {
-        assert_eq!(converges_everywhere(&frequency(equation, order)), None, "{equation}");
+    for (equation, order) in [
+        ("x'' + sin(x) = 0", 60),
+        ("x'' + x + x^2 = 0", 24),
+        (VAN_DER_POL, 60),
+    ] {
+        assert_eq!(
+            converges_everywhere(&frequency(equation, order)),
+            None,
+            "{equation}"
+        );
     }
 }
 
@@ -130,8 +162,8 @@ fn multiplied(left: &[Rational], right: &[Rational]) -> Vec<Rational> {
     (0..left.len()).map(term).collect()
 }
 
-/// Strong and weak singularities times an entire function, with another singularity beyond or a zero of the function before: the error
-/// is never larger than is said.
+/// Strong and weak singularities times an entire function, with another singularity beyond or a
+/// zero of the function before: the error is never larger than is said.
 #[test]
 fn the_error_of_a_radius_is_never_larger_than_said() {
     let (near, far, zero) = (ratio(-7, 5), ratio(-3, 1), ratio(1, 2));
@@ -139,9 +171,16 @@ fn the_error_of_a_radius_is_never_larger_than_said() {
     for degree in [24, 36] {
         for (numerator, denominator) in [(-6, 1), (-1, 2), (1, 2), (5, 2)] {
             let power = ratio(numerator, denominator);
-            let singular = multiplied(&planted(&near, &power, degree), &exponential(&ratio(1, 3), degree));
+            let singular = multiplied(
+                &planted(&near, &power, degree),
+                &exponential(&ratio(1, 3), degree),
+            );
             let beyond = planted(&far, &ratio(1, 4), degree);
-            let sum: Vec<Rational> = singular.iter().zip(&beyond).map(|(one, other)| one + other).collect();
+            let sum: Vec<Rational> = singular
+                .iter()
+                .zip(&beyond)
+                .map(|(one, other)| one + other)
+                .collect();
             let through_zero = multiplied(&singular, &planted(&zero, &ratio(1, 1), degree));
             for (name, coefficients) in [("sum", sum), ("zero", through_zero)] {
                 assert!(
@@ -161,18 +200,32 @@ fn the_error_of_a_radius_is_never_larger_than_said() {
     assert!(said >= 8, "{said}");
 }
 
-/// C. M. Andersen and J. F. Geer, SIAM J. Appl. Math. 42 (1982) 678-693: branch points of omega in mu^2 at a distance of about 3.42.
+/// C. M. Andersen and J. F. Geer, SIAM J. Appl. Math. 42 (1982) 678-693: branch points of omega in
+/// mu^2 at a distance of about 3.42.
 #[test]
 fn the_branch_points_of_van_der_pol() {
     let found = found(VAN_DER_POL, 120);
     let nearest = &found.nearest;
-    assert_eq!((found.variable_in_words().as_str(), found.highest), ("mu^2", 60));
-    assert!(nearest.radius.error < 1e-11 && nearest.angle.error < 1e-11, "{found:?}");
-    assert!((to_f64(&nearest.radius.value) - 3.42).abs() < 0.005, "{found:?}");
-    assert_eq!(nearest.exponent.as_ref().expect("a square root").value, ratio(1, 2));
+    assert_eq!(
+        (found.variable_in_words().as_str(), found.highest),
+        ("mu^2", 60)
+    );
+    assert!(
+        nearest.radius.error < 1e-11 && nearest.angle.error < 1e-11,
+        "{found:?}"
+    );
+    assert!(
+        (to_f64(&nearest.radius.value) - 3.42).abs() < 0.005,
+        "{found:?}"
+    );
+    assert_eq!(
+        nearest.exponent.as_ref().expect("a square root").value,
+        ratio(1, 2)
+    );
     let (_, size) = found.in_symbol().expect("mu alone");
     assert!((to_f64(&size.value) - 1.85).abs() < 0.005, "{size:?}");
-    // Another way to it: the recurrence that the coefficients of a pair obey, by least squares in doubles.
+    // Another way to it: the recurrence that the coefficients of a pair obey, by least squares in
+    // doubles.
     let law = frequency(VAN_DER_POL, 120);
     let law = law.law.frequency_squared().expect("a series");
     let coefficients: Vec<f64> = law.terms().map(|(_, number)| to_f64(number)).collect();
@@ -187,10 +240,13 @@ fn the_branch_points_of_van_der_pol() {
     );
     // So do the twenty and more of order 40, where the kind of the singularity cannot be told yet.
     for order in [40, 44, 48, 52] {
-        let early =
-            converges(&frequency(VAN_DER_POL, order)).unwrap_or_else(|| panic!("order {order}: no singularity"));
+        let early = converges(&frequency(VAN_DER_POL, order))
+            .unwrap_or_else(|| panic!("order {order}: no singularity"));
         let own = &early.nearest;
-        assert!(own.exponent.is_none() && own.radius.error < 0.1, "{early:?}");
+        assert!(
+            own.exponent.is_none() && own.radius.error < 0.1,
+            "{early:?}"
+        );
         assert!(
             holds(&own.radius, &nearest.radius.value) && holds(&own.angle, &nearest.angle.value),
             "{early:?}"
@@ -207,8 +263,9 @@ fn the_branch_points_of_van_der_pol() {
     }
 }
 
-/// Periods of van der Pol's cycle in fixed point, 176 binary digits behind the point: Taylor series from turning point to turning
-/// point, x'' = mu (1 - x^2) x' - x, and the turning point that is met again by the secant rule.
+/// Periods of van der Pol's cycle in fixed point, 176 binary digits behind the point: Taylor series
+/// from turning point to turning point, x'' = mu (1 - x^2) x' - x, and the turning point that is
+/// met again by the secant rule.
 struct Cycle {
     mu: Rational,
 }
@@ -266,7 +323,10 @@ impl Cycle {
                     let (place, _) = Self::state(&series, &end);
                     let force = product(
                         &fixed(&self.mu),
-                        &product(&((Integer::from(1) << BITS) - product(&place, &place)), &rate),
+                        &product(
+                            &((Integer::from(1) << BITS) - product(&place, &place)),
+                            &rate,
+                        ),
                     ) - &place;
                     end -= (rate << BITS) / force;
                 }
@@ -305,14 +365,15 @@ impl Cycle {
 /// The sum of a law at a value of its one symbol.
 fn at(solution: &Solution, value: &Rational) -> Rational {
     let law = solution.law.frequency().expect("a series of omega");
-    let terms = law
-        .terms()
-        .map(|(monomial, number)| number * num_traits::Pow::pow(value.clone(), monomial.exponent("mu".into())));
+    let terms = law.terms().map(|(monomial, number)| {
+        number * num_traits::Pow::pow(value.clone(), monomial.exponent("mu".into()))
+    });
     terms.sum()
 }
 
-/// E. Hairer, S. P. Norsett and G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., exercise 16.1, print the period at mu = 1
-/// to 29 digits; the integration above knows more, and nothing of the series.
+/// E. Hairer, S. P. Norsett and G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed.,
+/// exercise 16.1, print the period at mu = 1 to 29 digits; the integration above knows more, and
+/// nothing of the series.
 #[test]
 fn the_series_of_van_der_pol_has_the_period_to_forty_digits() {
     let law = frequency(VAN_DER_POL, 160);
@@ -340,15 +401,19 @@ fn quotients_of_high_degree_hold_far_beyond_the_radius() {
     };
     let quotient = solve(&oscillator, &options).expect("a quotient");
     for (mu, error) in [("mu = 3", 1e-8), ("mu = 5", 1e-5)] {
-        let judged = judge(&oscillator, &quotient, &mu.parse().expect("a value"), 1e-3).expect("a verdict");
+        let judged =
+            judge(&oscillator, &quotient, &mu.parse().expect("a value"), 1e-3).expect("a verdict");
         assert!(
-            judged.relative_error.is_some_and(|found| found.abs() < error),
+            judged
+                .relative_error
+                .is_some_and(|found| found.abs() < error),
             "{mu}: {judged:?}"
         );
     }
 }
 
-/// Quadratic approximants hold farther than quotients of as many coefficients, beyond the place where their two roots cross.
+/// Quadratic approximants hold farther than quotients of as many coefficients, beyond the place
+/// where their two roots cross.
 #[test]
 fn roots_of_quadratic_equations_hold_farther_than_quotients() {
     let oscillator = Oscillator::parse(VAN_DER_POL).expect("an equation");
@@ -368,9 +433,15 @@ fn roots_of_quadratic_equations_hold_farther_than_quotients() {
         .map(ToString::to_string)
         .find(|note| note.contains("cross"));
     assert!(followed.is_some_and(|note| note.contains("mu^2 = 1.1397")));
-    for (mu, least) in [("mu = 3", 1e-10), ("mu = 5", 1e-5), ("mu = 8", 1e-3), ("mu = 12", 1e-2)] {
+    for (mu, least) in [
+        ("mu = 3", 1e-10),
+        ("mu = 5", 1e-5),
+        ("mu = 8", 1e-3),
+        ("mu = 12", 1e-2),
+    ] {
         let error = |solution: &Solution| {
-            let judged = judge(&oscillator, solution, &mu.parse().expect("a value"), 1e-3).expect("a verdict");
+            let judged = judge(&oscillator, solution, &mu.parse().expect("a value"), 1e-3)
+                .expect("a verdict");
             judged.relative_error.expect("an error").abs()
         };
         let (found, other) = (error(&root), error(&quotient));
@@ -378,7 +449,8 @@ fn roots_of_quadratic_equations_hold_farther_than_quotients() {
     }
 }
 
-/// omega^2 of Duffing's equation at eps A^2 = s: sqrt(1 + s) agm(1, sqrt(1 - s/(2 (1 + s)))), squared.
+/// omega^2 of Duffing's equation at eps A^2 = s: sqrt(1 + s) agm(1, sqrt(1 - s/(2 (1 + s)))),
+/// squared.
 fn elliptic(size: f64) -> f64 {
     let (mut a, mut g) = (1.0, f64::sqrt(1.0 - size / (2.0 * (1.0 + size))));
     for _ in 0..9 {
@@ -387,8 +459,8 @@ fn elliptic(size: f64) -> f64 {
     (1.0 + size) * a * a
 }
 
-/// R of Duffing's [2/2/2] vanishes at eps A^2 = 4.16776... and P at -0.97...: there one form of the root is 0/0, and the root goes on, as
-/// far as it is right.
+/// R of Duffing's [2/2/2] vanishes at eps A^2 = 4.16776... and P at -0.97...: there one form of the
+/// root is 0/0, and the root goes on, as far as it is right.
 #[test]
 fn a_root_goes_through_a_removable_zero_of_its_denominator() {
     let oscillator = Oscillator::parse("x'' + x + eps*x^3 = 0").expect("an equation");
@@ -421,11 +493,18 @@ fn a_root_goes_through_a_removable_zero_of_its_denominator() {
         (1000.0, 1e-2),
     ] {
         let numbers = [("A".into(), 1.0), ("eps".into(), size)].into();
-        let found = evaluate(&oscillator, &root, &numbers).unwrap_or_else(|error| panic!("{size}: {error}"));
+        let found = evaluate(&oscillator, &root, &numbers)
+            .unwrap_or_else(|error| panic!("{size}: {error}"));
         let off = found.frequency_squared / elliptic(size) - 1.0;
         assert!(off.abs() < error, "{size}: {off}");
     }
-    let judged = judge(&oscillator, &root, &"eps = 1, A = 1".parse().expect("values"), 0.01).expect("a verdict");
+    let judged = judge(
+        &oscillator,
+        &root,
+        &"eps = 1, A = 1".parse().expect("values"),
+        0.01,
+    )
+    .expect("a verdict");
     let words = text::solution(&root, Some(&judged), 0.01);
     let (_, reach) = words.split_once("within 1 % up to A = ").expect("a range");
     let reach: f64 = reach
@@ -437,7 +516,8 @@ fn a_root_goes_through_a_removable_zero_of_its_denominator() {
     assert!(reach > 40.0, "{words}");
 }
 
-/// omega0 = sqrt(2) stays out of the expansion: with time and force halved, `omega^2` is half of it, term by term.
+/// omega0 = sqrt(2) stays out of the expansion: with time and force halved, `omega^2` is half of
+/// it, term by term.
 #[test]
 fn an_irrational_linear_frequency_is_no_letter_of_the_expansion() {
     for (force, halved) in [
@@ -451,24 +531,32 @@ fn an_irrational_linear_frequency_is_no_letter_of_the_expansion() {
                 order: Some(8),
                 ..Options::default()
             };
-            solve(&Oscillator::parse(&equation).expect("an equation"), &options).expect("a series")
+            solve(
+                &Oscillator::parse(&equation).expect("an equation"),
+                &options,
+            )
+            .expect("a series")
         });
         let omega0 = Symbol::new("omega0");
         for step in &own.steps {
             let coefficients = [&step.resonance, &step.correction];
             assert!(
-                coefficients.iter().all(|own| !own.symbols().contains(&omega0)),
+                coefficients
+                    .iter()
+                    .all(|own| !own.symbols().contains(&omega0)),
                 "{force}: {step:?}"
             );
         }
         let twice = |number: &Rational| number * ratio(2, 1);
-        let law = |solution: &Solution| solution.law.frequency_squared().cloned().expect("a series");
+        let law =
+            |solution: &Solution| solution.law.frequency_squared().cloned().expect("a series");
         assert_eq!(law(&own), law(&other).map(twice), "{force}");
         assert_eq!(own.displacement, other.displacement, "{force}");
     }
 }
 
-/// About an equilibrium that is no fraction every number is rounded, to fifteen digits, also in closed forms and what they are made of.
+/// About an equilibrium that is no fraction every number is rounded, to fifteen digits, also in
+/// closed forms and what they are made of.
 #[test]
 fn rounded_closed_forms_are_written_with_fifteen_digits() {
     let longest = |text: &str| {
@@ -491,7 +579,8 @@ fn rounded_closed_forms_are_written_with_fifteen_digits() {
             order,
             ..Options::default()
         };
-        let series = solve(&oscillator, &by(Method::LindstedtPoincare, None, Some(10))).expect("a series");
+        let series =
+            solve(&oscillator, &by(Method::LindstedtPoincare, None, Some(10))).expect("a series");
         for options in [
             by(Method::Pade, Some(Degrees::Quotient(2, 2)), None),
             by(Method::Pade, Some(Degrees::Quotient(4, 4)), None),
@@ -508,14 +597,19 @@ fn rounded_closed_forms_are_written_with_fifteen_digits() {
                     .frequency_squared
             };
             let off = squared(&solution) / squared(&series) - 1.0;
-            let allowed = if solution.degrees.is_some() { 1e-9 } else { 1e-3 };
+            let allowed = if solution.degrees.is_some() {
+                1e-9
+            } else {
+                1e-3
+            };
             assert!(off.abs() < allowed, "{equation}: {off} {words}");
         }
     }
 }
 
-/// omega^2 of Morse's oscillator is `1 - (1 - exp(-A))^2`. At A = 6 its series of order 48 is right and loses nine digits: that is said,
-/// and the value is off by no more. At A = 1 nothing is lost, and nothing is said.
+/// omega^2 of Morse's oscillator is `1 - (1 - exp(-A))^2`. At A = 6 its series of order 48 is right
+/// and loses nine digits: that is said, and the value is off by no more. At A = 1 nothing is lost,
+/// and nothing is said.
 #[test]
 fn digits_that_cancel_are_said_to_be_lost() {
     let morse = Oscillator::parse("x'' + exp(-x) - exp(-2*x) = 0").expect("an equation");
@@ -582,7 +676,13 @@ fn the_frequency_alone_has_the_verdict_of_the_whole() {
                 ..Options::default()
             };
             let solution = solve(&oscillator, &options).expect("an answer");
-            judge(&oscillator, &solution, &values.parse().expect("values"), 0.01).expect("a verdict")
+            judge(
+                &oscillator,
+                &solution,
+                &values.parse().expect("values"),
+                0.01,
+            )
+            .expect("a verdict")
         };
         let (whole, alone) = (verdict(false), verdict(true));
         assert_eq!(
@@ -595,6 +695,10 @@ fn the_frequency_alone_has_the_verdict_of_the_whole() {
             (whole.relative_error, whole.slope),
             "{equation}"
         );
-        assert_eq!((alone.max_deviation, alone.residual), (None, None), "{equation}");
+        assert_eq!(
+            (alone.max_deviation, alone.residual),
+            (None, None),
+            "{equation}"
+        );
     }
 }

@@ -1,5 +1,5 @@
-//! Whatever a program gives to the library is answered or refused: numbers that are none, lists that are empty or of another length, limits
-//! at the ends of their types. A panic fails.
+//! Whatever a program gives to the library is answered or refused: numbers that are none, lists
+//! that are empty or of another length, limits at the ends of their types. A panic fails.
 
 use lindstedt::genetic::{self, *};
 use lindstedt::method::{Options, solve};
@@ -7,7 +7,9 @@ use lindstedt::numeric::ode::{self, State, quadrature, root};
 use lindstedt::numeric::{period, periodic, return_map};
 use lindstedt::system::{Event, Integrator, System};
 use lindstedt::trajectory::Course;
-use lindstedt::{Method, Oscillator, Symbol, Values, expr::parse_expression, hill, impact, judge, response};
+use lindstedt::{
+    Method, Oscillator, Symbol, Values, expr::parse_expression, hill, impact, judge, response,
+};
 
 const HOSTILE: [f64; 10] = [
     0.0,
@@ -23,7 +25,9 @@ const HOSTILE: [f64; 10] = [
 ];
 
 fn pairs() -> impl Iterator<Item = (f64, f64)> {
-    HOSTILE.into_iter().flat_map(|one| HOSTILE.map(|other| (one, other)))
+    HOSTILE
+        .into_iter()
+        .flat_map(|one| HOSTILE.map(|other| (one, other)))
 }
 
 #[test]
@@ -33,7 +37,11 @@ fn numerics() {
         let _ = root::find_minimum(f64::cos, a, b);
         let _ = quadrature::integrate_smooth(|x| 1.0 / x, a, b, 1e-9);
         let _ = quadrature::integrate_piecewise(|x| 1.0 / x, &[a, b, a], 1e-9);
-        let start = State { t: 0.0, x: a, v: 1.0 };
+        let start = State {
+            t: 0.0,
+            x: a,
+            v: 1.0,
+        };
         let options = ode::Options::default();
         if let Ok(path) = ode::integrate(|_, x, v| -x - v, start, b.min(100.0), &[], &options) {
             let _ = HOSTILE.map(|t| (path.at(t), path.phase_at(t)));
@@ -45,11 +53,22 @@ fn numerics() {
             maximum_steps: 20_000,
             ..options
         };
-        let _ = ode::integrate(|_, x, _| -x, State { t: 0.0, x: 1.0, v: 1.0 }, 10.0, &[], &options);
+        let _ = ode::integrate(
+            |_, x, _| -x,
+            State {
+                t: 0.0,
+                x: 1.0,
+                v: 1.0,
+            },
+            10.0,
+            &[],
+            &options,
+        );
         let _ = period::swing(&|_, x, _| -x, a, b, 100.0);
         let force = |x: f64| x + x * x * x;
         let _ = period::conservative_period(&period::Force::smooth(&force), a, b);
-        if let Ok(motion) = periodic::periodic_motion(&|t, x, v| t.cos() - x - v, a, [b, 0.0], 1.0) {
+        if let Ok(motion) = periodic::periodic_motion(&|t, x, v| t.cos() - x - v, a, [b, 0.0], 1.0)
+        {
             let _ = [0, u32::MAX].map(|number| motion.harmonic(number));
         }
         let acceleration = |x: f64, v: f64| (1.0 - x * x) * v - x;
@@ -92,7 +111,11 @@ fn systems_and_courses() {
             let _ = system.solve(0.0, &[1.0, 0.0], b, &[], &limited(a, 2000));
         }
         for start in [&[][..], &[1.0], &[1.0, 2.0, 3.0]] {
-            assert!(system.solve(0.0, start, 1.0, &[], &limited(1e-9, 2000)).is_err());
+            assert!(
+                system
+                    .solve(0.0, start, 1.0, &[], &limited(1e-9, 2000))
+                    .is_err()
+            );
         }
         let _ = system.solve(0.0, &[1.0, 0.0], 1.0, &[], &limited(1e-9, 0));
     }
@@ -190,7 +213,8 @@ fn choices_of_a_method() {
         ] {
             let values: Values = at.parse().expect("values");
             if let Ok(solution) = &solution {
-                let _ = HOSTILE.map(|tolerance| judge(&oscillator, solution, &values, tolerance).is_ok());
+                let _ = HOSTILE
+                    .map(|tolerance| judge(&oscillator, solution, &values, tolerance).is_ok());
                 let motion = solution.motion_at(&values);
                 let _ = motion.map(|motion| HOSTILE.map(|t| (motion.at(t), motion.velocity(t))));
             }
@@ -212,12 +236,14 @@ fn curves_and_responses() {
         };
         for a in HOSTILE {
             let numbers = [(Symbol::new("eps"), a)].into();
-            let _ = [0, 1].map(|steps| hill::chart(&curves, &numbers, "eps".into(), a, steps).is_ok());
+            let _ =
+                [0, 1].map(|steps| hill::chart(&curves, &numbers, "eps".into(), a, steps).is_ok());
             let _ = hill::chart(&curves, &Default::default(), "k".into(), a, 1);
         }
     }
     for (a, b) in pairs() {
-        let question = response::Question::new("x'' + x'/5 + x + x^3/10 = cos(w*t)", "w", [a, b], "");
+        let question =
+            response::Question::new("x'' + x'/5 + x + x^3/10 = cos(w*t)", "w", [a, b], "");
         let mut question = question.expect("a question");
         question.harmonics = Some(3);
         let _ = response::respond(&question);
@@ -234,8 +260,14 @@ fn impacts() {
         for a in HOSTILE {
             let mut case = impact::Case::default();
             case.set(parameter, a);
-            let _ = (case.get(parameter), case.stiffness(), case.dissipation(None));
-            let Ok((model, start)) = case.motion() else { continue };
+            let _ = (
+                case.get(parameter),
+                case.stiffness(),
+                case.dissipation(None),
+            );
+            let Ok((model, start)) = case.motion() else {
+                continue;
+            };
             let settings = limited(impact::Settings {
                 duration: 5.0,
                 ..Default::default()
@@ -256,7 +288,10 @@ fn impacts() {
             ..Default::default()
         };
         for settings in [
-            impact::Settings { duration: a, ..five },
+            impact::Settings {
+                duration: a,
+                ..five
+            },
             impact::Settings {
                 relative_tolerance: a,
                 ..five
@@ -271,12 +306,20 @@ fn impacts() {
             },
         ] {
             let settings = limited(settings);
-            let _ = impact::simulate(&model, impact::Start::default(), impact::Integrator::Taylor, &settings);
+            let _ = impact::simulate(
+                &model,
+                impact::Start::default(),
+                impact::Integrator::Taylor,
+                &settings,
+            );
             let _ = impact::chain(&model, impact::Start::default(), &settings);
         }
     }
     for (a, b) in pairs() {
-        let _ = (impact::hertz::penetration(a, b), impact::hertz::duration(a, b));
+        let _ = (
+            impact::hertz::penetration(a, b),
+            impact::hertz::duration(a, b),
+        );
         let setup = impact::Setup {
             release: a,
             barrier: b,
@@ -302,7 +345,13 @@ fn searches() {
         objectives: values.to_vec(),
         ..Evaluation::default()
     };
-    let lists: [&[f64]; 5] = [&[], &[0.5], &[0.5, 1.5], &[0.5, 1.5, 2.0], &[f64::NAN, f64::INFINITY]];
+    let lists: [&[f64]; 5] = [
+        &[],
+        &[0.5],
+        &[0.5, 1.5],
+        &[0.5, 1.5, 2.0],
+        &[f64::NAN, f64::INFINITY],
+    ];
     let mut random = generator(0, 0);
     for one in lists {
         for other in lists {
@@ -319,7 +368,8 @@ fn searches() {
             }
             let all = [worth(one), worth(other)];
             let all: Vec<&Evaluation> = all.iter().collect();
-            let _ = HOSTILE.map(|tolerance| (ranks(&all, tolerance), non_dominated(&all, tolerance)));
+            let _ =
+                HOSTILE.map(|tolerance| (ranks(&all, tolerance), non_dominated(&all, tolerance)));
             crowding(&all);
         }
         for parents in [0, 1, 5] {
@@ -327,14 +377,27 @@ fn searches() {
             rank_scaling(one, parents);
         }
         for window in [0, 1, usize::MAX] {
-            let _ = HOSTILE.map(|tolerance| has_stalled(one, window, tolerance, StallTest::default()));
+            let _ =
+                HOSTILE.map(|tolerance| has_stalled(one, window, tolerance, StallTest::default()));
         }
         let _ = [0, 1, 64, u32::MAX].map(|bits| Coding::Bits(bits).point(one, &space));
     }
     for evaluations in [0, 1, 3] {
         for every in [0, 1, usize::MAX] {
-            random_search(&space, |_| worth(&[]), (evaluations, every), 0.1, &mut random);
-            differential_evolution(&space, |_| worth(&[f64::NAN]), (evaluations, every), f64::NAN, 0);
+            random_search(
+                &space,
+                |_| worth(&[]),
+                (evaluations, every),
+                0.1,
+                &mut random,
+            );
+            differential_evolution(
+                &space,
+                |_| worth(&[f64::NAN]),
+                (evaluations, every),
+                f64::NAN,
+                0,
+            );
         }
     }
     for population in [0, 1, 2, 5] {
@@ -350,7 +413,13 @@ fn searches() {
                 };
                 options.most_evaluations();
                 for values in lists {
-                    search(&space, |_| worth(values), &options, &mut random, &mut |_| true);
+                    search(
+                        &space,
+                        |_| worth(values),
+                        &options,
+                        &mut random,
+                        &mut |_| true,
+                    );
                     let mut count = 0;
                     let shorter = |_: &[f64]| {
                         count += 1;

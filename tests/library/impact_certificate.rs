@@ -1,5 +1,5 @@
-//! Impacts in proved numbers, held against elliptic integrals of another crate, quadrature in other variables, Runge-Kutta, and exact
-//! relations.
+//! Impacts in proved numbers, held against elliptic integrals of another crate, quadrature in other
+//! variables, Runge-Kutta, and exact relations.
 
 use lindstedt::certificate::{Enclosure, ImpactEnclosure, NotEnclosed, enclose_impact};
 use lindstedt::exact::{Rational, from_f64, to_f64};
@@ -90,7 +90,8 @@ fn thirty_digits_and_their_sum() {
     }
 }
 
-/// The harder the barrier, the less the swing acts during the contact: its duration times `gamma^(2/5) v^(1/5)` tends to the constant of Hertz,
+/// The harder the barrier, the less the swing acts during the contact: its duration times
+/// `gamma^(2/5) v^(1/5)` tends to the constant of Hertz,
 /// `2 (5/4)^(2/5) int_0^1 dz/sqrt(1 - z^(5/2))`.
 #[test]
 fn a_hard_barrier_takes_the_time_of_hertz() {
@@ -106,32 +107,48 @@ fn a_hard_barrier_takes_the_time_of_hertz() {
         let scaled = to_f64(&impact.duration.middle) * stiffness.powf(0.4) * speed.powf(0.2);
         (scaled / constant - 1.0).abs()
     });
-    assert!(errors[2] < 1e-6 && errors[1] < 0.2 * errors[0], "{errors:?}");
+    assert!(
+        errors[2] < 1e-6 && errors[1] < 0.2 * errors[0],
+        "{errors:?}"
+    );
 }
 
-/// Runge-Kutta is within its own errors of what is proved; the closed forms are as far off as is said.
+/// Runge-Kutta is within its own errors of what is proved; the closed forms are as far off as is
+/// said.
 #[test]
 fn runge_kutta_is_as_good_as_it_says() {
     let setup = Setup {
         stiffness: 1e6,
         ..Setup::default()
     };
-    let proved = enclose_impact(&fraction(3, 2), &fraction(323, 1000), &fraction(1_000_000, 1)).expect("a proof");
+    let proved = enclose_impact(
+        &fraction(3, 2),
+        &fraction(323, 1000),
+        &fraction(1_000_000, 1),
+    )
+    .expect("a proof");
     let impact = solve(setup).expect("an impact");
     for (quantity, (name, truth)) in impact.quantities().into_iter().zip(proved.in_order()) {
         assert_eq!(quantity.name, name);
-        assert!(truth.relative_error(quantity.runge_kutta).upper < 1e-8, "{name}");
+        assert!(
+            truth.relative_error(quantity.runge_kutta).upper < 1e-8,
+            "{name}"
+        );
         for (value, error) in quantity.closed_forms.iter().zip(quantity.errors()) {
             let range = truth.relative_error(*value);
             assert!(range.lower <= range.upper && range.upper - range.lower < 1e-14);
-            assert!((range.upper - error.abs()).abs() < 1e-8, "{name}: {range:?} {error}");
+            assert!(
+                (range.upper - error.abs()).abs() < 1e-8,
+                "{name}: {range:?} {error}"
+            );
         }
     }
 }
 
 #[test]
 fn relative_errors_are_rounded_outwards() {
-    let proved = enclose_impact(&fraction(3, 2), &fraction(0, 1), &fraction(1000, 1)).expect("a proof");
+    let proved =
+        enclose_impact(&fraction(3, 2), &fraction(0, 1), &fraction(1000, 1)).expect("a proof");
     for parts in [-1e-3, -1e-9, 1e-12, 0.25] {
         let value = to_f64(&proved.speed.middle) * (1.0 + parts);
         let range = proved.speed.relative_error(value);
@@ -159,7 +176,11 @@ fn what_is_no_impact_is_refused() {
         (3.0, 1.5, 1.0, Deep),
     ] {
         let found = enclosed(amplitude, barrier, stiffness);
-        assert_eq!(found.expect_err("no proof"), why, "{amplitude} {barrier} {stiffness}");
+        assert_eq!(
+            found.expect_err("no proof"),
+            why,
+            "{amplitude} {barrier} {stiffness}"
+        );
     }
     // What is extreme ends in a refusal or in numbers, and in time.
     for stiffness in [1e-300, 1e-12, 1e40, 1e300] {

@@ -1,5 +1,6 @@
-//! Inertia that depends on the position, by every method that takes it: against Runge-Kutta on the equation as typed, against
-//! motions that are known exactly, and against the definitions computed another way.
+//! Inertia that depends on the position, by every method that takes it: against Runge-Kutta on the
+//! equation as typed, against motions that are known exactly, and against the definitions computed
+//! another way.
 
 use lindstedt::Values;
 use lindstedt::method::{Options, solve};
@@ -15,7 +16,8 @@ fn derived(equation: &str, method: Method, order: Option<u32>) -> (Oscillator, S
         order,
         ..Options::default()
     };
-    let solution = solve(&oscillator, &options).unwrap_or_else(|refusal| panic!("{equation}: {refusal}"));
+    let solution =
+        solve(&oscillator, &options).unwrap_or_else(|refusal| panic!("{equation}: {refusal}"));
     (oscillator, solution)
 }
 
@@ -27,7 +29,8 @@ fn judged(equation: &str, method: Method, order: Option<u32>, at: &[(&str, &str)
             .insert(Symbol::new(name), value.parse().expect("a number"))
             .expect("a value");
     }
-    judge(&oscillator, &solution, &values, 0.01).unwrap_or_else(|error| panic!("{equation}: {error}"))
+    judge(&oscillator, &solution, &values, 0.01)
+        .unwrap_or_else(|error| panic!("{equation}: {error}"))
 }
 
 /// The judge integrates the equation as typed by Runge-Kutta: it knows nothing of the energy.
@@ -43,9 +46,15 @@ fn the_exact_frequency_is_that_of_runge_kutta() {
         ("x'' + x*x'^2/3 + x + x^2 = 0", vec![("A", "0.3")]),
         ("x'' + x'^2/4 + x = 0", vec![("A", "0.5")]),
         ("x'' + x'^2*atan(x)^3*sinh(x) + x = 0", vec![("A", "0.6")]),
-        ("(2 + cos(x))*x'' - sin(x)*x'^2/2 + 3*sin(x) = 0", vec![("A", "1")]),
+        (
+            "(2 + cos(x))*x'' - sin(x)*x'^2/2 + 3*sin(x) = 0",
+            vec![("A", "1")],
+        ),
         // The same in SI units of a nanometre and a gigahertz.
-        ("(1 + 1e18*x^2)*x'' + 1e18*x*x'^2 + 1e18*x = 0", vec![("A", "1.5e-9")]),
+        (
+            "(1 + 1e18*x^2)*x'' + 1e18*x*x'^2 + 1e18*x = 0",
+            vec![("A", "1.5e-9")],
+        ),
     ] {
         let verdict = judged(equation, Method::Exact, None, &at);
         let error = verdict.relative_error.expect("a frequency");
@@ -55,8 +64,8 @@ fn the_exact_frequency_is_that_of_runge_kutta() {
     }
 }
 
-/// Mathews and Lakshmanan: `x = A cos(omega t)` solves it with `omega^2 = k/(1 + b A^2)`, so every method that keeps one
-/// harmonic must find just that.
+/// Mathews and Lakshmanan: `x = A cos(omega t)` solves it with `omega^2 = k/(1 + b A^2)`, so every
+/// method that keeps one harmonic must find just that.
 #[test]
 fn a_nonlinear_oscillator_that_swings_like_a_linear_one() {
     let equation = "(1 + b*x^2)*x'' - b*x*x'^2 + k*x = 0";
@@ -69,7 +78,12 @@ fn a_nonlinear_oscillator_that_swings_like_a_linear_one() {
         (Method::HarmonicBalance, Some(3)),
     ] {
         for amplitude in ["1.2", "-1.2"] {
-            let verdict = judged(equation, method, order, &[("A", amplitude), ("b", "0.7"), ("k", "3")]);
+            let verdict = judged(
+                equation,
+                method,
+                order,
+                &[("A", amplitude), ("b", "0.7"), ("k", "3")],
+            );
             let frequency = verdict.frequency.expect("a frequency");
             assert!(
                 (frequency / exact - 1.0).abs() < 1e-11,
@@ -77,13 +91,17 @@ fn a_nonlinear_oscillator_that_swings_like_a_linear_one() {
                 method.name()
             );
             assert!((verdict.true_frequency / exact - 1.0).abs() < 1e-10);
-            assert!(verdict.max_deviation.expect("a motion") < 1e-8, "{}", method.name());
+            assert!(
+                verdict.max_deviation.expect("a motion") < 1e-8,
+                "{}",
+                method.name()
+            );
         }
     }
 }
 
-/// The laws of one term against their definitions by quadrature: `<(x'' + g x'^2 + h) M cos(theta)> = 0`, and the energy at
-/// an eighth of the period.
+/// The laws of one term against their definitions by quadrature:
+/// `<(x'' + g x'^2 + h) M cos(theta)> = 0`, and the energy at an eighth of the period.
 #[test]
 fn laws_of_one_term_are_their_definitions() {
     type Function = fn(f64) -> f64;
@@ -94,7 +112,12 @@ fn laws_of_one_term_are_their_definitions() {
             |x| x / (1.0 + x * x),
             |x| x / (1.0 + x * x),
         ),
-        ("x'' + x*x'^2 + sin(x) = 0", |x| (x * x).exp(), |x| x, f64::sin),
+        (
+            "x'' + x*x'^2 + sin(x) = 0",
+            |x| (x * x).exp(),
+            |x| x,
+            f64::sin,
+        ),
         (
             "(2 + cos(x))*x'' - sin(x)*x'^2/2 + 3*sin(x) = 0",
             |x| 2.0 + x.cos(),
@@ -116,7 +139,9 @@ fn laws_of_one_term_are_their_definitions() {
                     .0
             };
             let work = mean(&|c, _| mass(size * c) * force(size * c) * c);
-            let inertia = mean(&|c, s| mass(size * c) * (size * c * c - growth(size * c) * size * size * s * s * c));
+            let inertia = mean(&|c, s| {
+                mass(size * c) * (size * c * c - growth(size * c) * size * size * s * s * c)
+            });
             let found = frequency(Method::Hamiltonian, None);
             assert!(
                 (found * inertia / work - 1.0).abs() < 1e-11,
@@ -136,8 +161,9 @@ fn laws_of_one_term_are_their_definitions() {
     }
 }
 
-/// Homotopy perturbation of order n is right to the power 2 n of the amplitude, n where there are even terms: its error, against
-/// Runge-Kutta on the equation as typed, falls by as much with the amplitude.
+/// Homotopy perturbation of order n is right to the power 2 n of the amplitude, n where there are
+/// even terms: its error, against Runge-Kutta on the equation as typed, falls by as much with the
+/// amplitude.
 #[test]
 fn the_error_of_homotopy_perturbation_has_the_power_of_its_order() {
     for (equation, even, at) in [
@@ -151,7 +177,11 @@ fn the_error_of_homotopy_perturbation_has_the_power_of_its_order() {
         ("x'' + x'^2/4 + x = 0", true, vec![]),
         ("x'' + x*x'^2/3 + x + x^2 = 0", true, vec![]),
     ] {
-        let amplitudes = if even { ["0.02", "0.04"] } else { ["0.1", "0.2"] };
+        let amplitudes = if even {
+            ["0.02", "0.04"]
+        } else {
+            ["0.1", "0.2"]
+        };
         for order in [1, 2, 3] {
             if even && order == 1 {
                 continue;
@@ -175,36 +205,58 @@ fn the_error_of_homotopy_perturbation_has_the_power_of_its_order() {
         let [near, far] = amplitudes.map(|amplitude| {
             let mut values = at.clone();
             values.push(("A", amplitude));
-            let methods = [(Method::HomotopyPerturbation, order), (Method::LindstedtPoincare, 4)];
+            let methods = [
+                (Method::HomotopyPerturbation, order),
+                (Method::LindstedtPoincare, 4),
+            ];
             let [homotopy, series] = methods.map(|(method, order)| {
                 let verdict = judged(equation, method, Some(order), &values);
                 verdict.frequency.expect("a frequency")
             });
             (homotopy / series - 1.0).abs()
         });
-        assert!((far / near).log2() > power - 0.4, "{equation}: {near:e}, {far:e}");
+        assert!(
+            (far / near).log2() > power - 0.4,
+            "{equation}: {near:e}, {far:e}"
+        );
     }
 }
 
-/// One harmonic, whether balanced or freed of its secular term, gives one law: `omega^2 (1 - A^2/4) = 1`.
+/// One harmonic, whether balanced or freed of its secular term, gives one law:
+/// `omega^2 (1 - A^2/4) = 1`.
 #[test]
 fn the_first_order_of_homotopy_perturbation_is_the_balance_of_one_harmonic() {
-    let (_, solution) = derived("x'' + x*x'^2 + x = 0", Method::HomotopyPerturbation, Some(1));
+    let (_, solution) = derived(
+        "x'' + x*x'^2 + x = 0",
+        Method::HomotopyPerturbation,
+        Some(1),
+    );
     let law = solution.law.closed_form().expect("a law").value.clone();
     for (amplitude, expected) in [(0.5, 1.0 / (1.0 - 0.0625)), (1.5, 1.0 / (1.0 - 0.5625))] {
         let value = law.evaluate(&std::collections::BTreeMap::from([("A".into(), amplitude)]));
-        assert!((value.expect("a number") / expected - 1.0_f64).abs() < 1e-14, "{law}");
+        assert!(
+            (value.expect("a number") / expected - 1.0_f64).abs() < 1e-14,
+            "{law}"
+        );
     }
     for equation in ["x'' + x*x'^2 + x = 0", "x'' + x^3*x'^2/2 + 2*x - x^3 = 0"] {
         let [one, other] = [Method::HomotopyPerturbation, Method::HarmonicBalance].map(|method| {
             let verdict = judged(equation, method, Some(1), &[("A", "0.8")]);
             verdict.frequency.expect("a frequency")
         });
-        assert!((one / other - 1.0).abs() < 1e-12, "{equation}: {one} {other}");
+        assert!(
+            (one / other - 1.0).abs() < 1e-12,
+            "{equation}: {one} {other}"
+        );
     }
     // Units do not matter: a nanometre and a gigahertz.
     let frequency = |equation, amplitude| {
-        let verdict = judged(equation, Method::HomotopyPerturbation, Some(2), &[("A", amplitude)]);
+        let verdict = judged(
+            equation,
+            Method::HomotopyPerturbation,
+            Some(2),
+            &[("A", amplitude)],
+        );
         verdict.frequency.expect("a frequency")
     };
     let plain = frequency("(1 + x^2)*x'' + x*x'^2 + x = 0", "0.3");
@@ -212,7 +264,8 @@ fn the_first_order_of_homotopy_perturbation_is_the_balance_of_one_harmonic() {
     assert!((small / plain / 1e9 - 1.0).abs() < 1e-12, "{small} {plain}");
 }
 
-/// More harmonics come closer to Runge-Kutta, and the balances that are written out hold at the numbers found.
+/// More harmonics come closer to Runge-Kutta, and the balances that are written out hold at the
+/// numbers found.
 #[test]
 fn harmonic_balance_converges_and_its_equations_hold() {
     for (equation, at) in [
@@ -223,16 +276,24 @@ fn harmonic_balance_converges_and_its_equations_hold() {
         ),
         ("x'' + x*x'^2/3 + x + x^2 = 0", vec![("A", "0.2")]),
         ("x'' + x*x'^2 + sin(x) = 0", vec![("A", "1")]),
-        ("(1 + 1e18*x^2)*x'' + 1e18*x*x'^2 + 1e18*x = 0", vec![("A", "0.8e-9")]),
+        (
+            "(1 + 1e18*x^2)*x'' + 1e18*x*x'^2 + 1e18*x = 0",
+            vec![("A", "0.8e-9")],
+        ),
     ] {
         let mut last = f64::INFINITY;
         for order in [1, 3, 6] {
             let verdict = judged(equation, Method::HarmonicBalance, Some(order), &at);
             let error = verdict.relative_error.expect("a frequency").abs();
-            assert!(error < 0.2 * last, "{equation} with {order}: {error:e} after {last:e}");
+            assert!(
+                error < 0.2 * last,
+                "{equation} with {order}: {error:e} after {last:e}"
+            );
             last = error;
             let (_, solution) = derived(equation, Method::HarmonicBalance, Some(order));
-            let Some(system) = solution.law.system() else { continue };
+            let Some(system) = solution.law.system() else {
+                continue;
+            };
             let mut values: std::collections::BTreeMap<Symbol, f64> = at
                 .iter()
                 .map(|(name, value)| (Symbol::new(name), value.parse().expect("a number")))
@@ -263,7 +324,11 @@ fn derivations_lead_from_the_mass_to_the_law() {
         for method in [Method::EnergyBalance, Method::Hamiltonian] {
             let (_, solution) = derived(equation, method, None);
             let law = solution.formula();
-            let lines: Vec<String> = solution.derivation.iter().map(ToString::to_string).collect();
+            let lines: Vec<String> = solution
+                .derivation
+                .iter()
+                .map(ToString::to_string)
+                .collect();
             assert!(lines[0].ends_with(mass), "{lines:?}");
             assert_eq!(lines.last(), Some(&law), "{}", method.name());
         }
@@ -287,8 +352,13 @@ fn derivations_lead_from_the_mass_to_the_law() {
             amplitude: Some(AmplitudeConvention::FirstHarmonic),
             ..Options::default()
         };
-        let refusal = solve(&oscillator, &options).expect_err("a refusal").to_string();
-        assert!(refusal.contains("measures the amplitude as A = x(0)"), "{refusal}");
+        let refusal = solve(&oscillator, &options)
+            .expect_err("a refusal")
+            .to_string();
+        assert!(
+            refusal.contains("measures the amplitude as A = x(0)"),
+            "{refusal}"
+        );
     }
 }
 
@@ -312,13 +382,19 @@ fn other_velocities_are_refused() {
                 method: Some(method),
                 ..Options::default()
             };
-            let refusal = solve(&oscillator, &options).expect_err("a refusal").to_string();
-            assert!(refusal.contains(&format!("`{term}`")), "{equation}: {refusal}");
+            let refusal = solve(&oscillator, &options)
+                .expect_err("a refusal")
+                .to_string();
+            assert!(
+                refusal.contains(&format!("`{term}`")),
+                "{equation}: {refusal}"
+            );
         }
     }
 }
 
-/// A place at which the inertia is a quotient of zeros is one that the motion passes; one at which it grows like 1/x or faster is not.
+/// A place at which the inertia is a quotient of zeros is one that the motion passes; one at which
+/// it grows like 1/x or faster is not.
 #[test]
 fn inertia_without_a_value_at_rest_is_refused_and_no_other() {
     for equation in [

@@ -1,4 +1,5 @@
-//! The judge and its ranges on forces that break what looks at points alone, compared with independent truth.
+//! The judge and its ranges on forces that break what looks at points alone, compared with
+//! independent truth.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
@@ -16,7 +17,9 @@ use lindstedt::{Oscillator, Symbol};
 fn values(at: &[(&str, &str)]) -> Values {
     let mut values = Values::default();
     for (name, value) in at {
-        values.insert(Symbol::new(name), value.parse().unwrap()).unwrap();
+        values
+            .insert(Symbol::new(name), value.parse().unwrap())
+            .unwrap();
     }
     values
 }
@@ -32,16 +35,27 @@ fn judged(equation: &str, method: Method, at: &[(&str, &str)]) -> Verification {
 }
 
 fn compared(equation: &str, at: &[(&str, &str)]) -> Comparison {
-    compare(&Oscillator::parse(equation).unwrap(), &values(at), None, 0.01).unwrap()
+    compare(
+        &Oscillator::parse(equation).unwrap(),
+        &values(at),
+        None,
+        0.01,
+    )
+    .unwrap()
 }
 
 fn texts(verification: &Verification) -> String {
-    let texts: Vec<&str> = verification.ranges.iter().map(|range| range.text.as_str()).collect();
+    let texts: Vec<&str> = verification
+        .ranges
+        .iter()
+        .map(|range| range.text.as_str())
+        .collect();
     texts.join("\n")
 }
 
-/// The true frequency by the velocity Verlet scheme in steps far shorter than the bump is wide, extrapolated to none
-/// (L. Verlet, Phys. Rev. 159 (1967) 98): nothing of this is shared with the judge.
+/// The true frequency by the velocity Verlet scheme in steps far shorter than the bump is wide,
+/// extrapolated to none (L. Verlet, Phys. Rev. 159 (1967) 98): nothing of this is shared with the
+/// judge.
 fn by_small_steps(force: impl Fn(f64) -> f64, start: f64, step: f64) -> f64 {
     let half_period = |h: f64| {
         let (mut t, mut x, mut v) = (0.0, start, 0.0);
@@ -108,7 +122,8 @@ fn narrow_places_of_the_force_are_seen() {
 
 #[test]
 fn a_barrier_is_judged_by_quadrature_between_its_corners() {
-    // One half of the period on each side of x = 0.323: a pendulum, and a linear spring so stiff that gravity is a constant.
+    // One half of the period on each side of x = 0.323: a pendulum, and a linear spring so stiff
+    // that gravity is a constant.
     let linear = judged(
         "x'' + sin(x) + 1e6*(x - 0.323)*H(x - 0.323) = 0",
         Method::Exact,
@@ -132,13 +147,21 @@ fn a_barrier_is_judged_by_quadrature_between_its_corners() {
     assert!((frequency - 1.52).abs() < 2e-3, "{frequency}");
     for row in &hertz.rows {
         let everywhere = matches!(row.reach, Some(Reach::Everywhere(_)));
-        assert!(row.frequency.is_some() || !everywhere, "{}", row.solution.title());
+        assert!(
+            row.frequency.is_some() || !everywhere,
+            "{}",
+            row.solution.title()
+        );
     }
 }
 
 #[test]
 fn the_unit_of_time_and_length_does_not_matter() {
-    let reference = judged("x'' + sin(x) = 0", Method::LindstedtPoincare, &[("A", "3/2")]);
+    let reference = judged(
+        "x'' + sin(x) = 0",
+        Method::LindstedtPoincare,
+        &[("A", "3/2")],
+    );
     for (equation, amplitude, rate, length) in [
         ("x'' + 1e14*sin(x) = 0", "3/2", 1e7, 1.0),
         ("x'' + 1e16*sin(x) = 0", "3/2", 1e8, 1.0),
@@ -169,13 +192,19 @@ fn the_unit_of_time_and_length_does_not_matter() {
             "{}",
             texts(&found)
         );
-        assert_eq!(found.ranges.len(), reference.ranges.len(), "{}", texts(&found));
+        assert_eq!(
+            found.ranges.len(),
+            reference.ranges.len(),
+            "{}",
+            texts(&found)
+        );
     }
 }
 
 #[test]
 fn the_radius_of_convergence_is_that_of_known_singularities() {
-    // The series of a cubic force ends where the exact modulus does, A^2 = -c1/c3; that of a sine at the separatrix.
+    // The series of a cubic force ends where the exact modulus does, A^2 = -c1/c3; that of a sine
+    // at the separatrix.
     for (equation, radius) in [
         ("x'' + 2*x + x^3 = 0", 2.0_f64.sqrt()),
         ("x'' + x + x^3 = 0", 1.0),
@@ -183,17 +212,28 @@ fn the_radius_of_convergence_is_that_of_known_singularities() {
         ("x'' + exp(x) - 1 = 0", 2.398),
         ("x'' + 7*x + 1e-6*x^3 = 0", 7e6_f64.sqrt()),
     ] {
-        let found = texts(&judged(equation, Method::LindstedtPoincare, &[("A", "1/2")]));
+        let found = texts(&judged(
+            equation,
+            Method::LindstedtPoincare,
+            &[("A", "1/2")],
+        ));
         let (_, rest) = found.split_once("|A| < about ").unwrap();
         let estimate: f64 = rest.split_once(':').unwrap().0.parse().unwrap();
-        assert!((estimate / radius - 1.0).abs() < 0.005, "{equation}: {found}");
+        assert!(
+            (estimate / radius - 1.0).abs() < 0.005,
+            "{equation}: {found}"
+        );
     }
     let found = judged(
         "x'' + 2*x + eps*x^3 = 0",
         Method::LindstedtPoincare,
         &[("A", "3"), ("eps", "1/10")],
     );
-    assert!(texts(&found).contains("|eps| < about 0.222:"), "{}", texts(&found));
+    assert!(
+        texts(&found).contains("|eps| < about 0.222:"),
+        "{}",
+        texts(&found)
+    );
 }
 
 #[test]
@@ -225,8 +265,11 @@ fn the_range_ends_where_the_error_first_crosses_the_tolerance() {
                     continue;
                 }
                 let mut at = Values::default();
-                at.insert("A".into(), Expr::number(lindstedt::exact::from_f64(size).unwrap()))
-                    .unwrap();
+                at.insert(
+                    "A".into(),
+                    Expr::number(lindstedt::exact::from_f64(size).unwrap()),
+                )
+                .unwrap();
                 let Ok(motion) = exact_frequency(&oscillator, size) else {
                     continue;
                 };
@@ -246,8 +289,9 @@ fn the_range_ends_where_the_error_first_crosses_the_tolerance() {
     }
 }
 
-/// omega of `x'' + x + x*x'^2 = 0`, whose velocity is `x'^2 = exp(A^2 - x^2) - 1`: the time over the angle `x = A*sin(angle)` by the
-/// midpoint rule, which is exact to rounding for a periodic integrand.
+/// omega of `x'' + x + x*x'^2 = 0`, whose velocity is `x'^2 = exp(A^2 - x^2) - 1`: the time over
+/// the angle `x = A*sin(angle)` by the midpoint rule, which is exact to rounding for a periodic
+/// integrand.
 fn with_velocity_squared(amplitude: f64) -> f64 {
     const STEPS: u32 = 400;
     let step = std::f64::consts::FRAC_PI_2 / f64::from(STEPS);
@@ -264,9 +308,11 @@ fn what_velocities_add_has_its_range_and_its_backbone() {
     let cases: [(&str, &str, &Truth); 2] = [
         ("x'' + x + x*x'^2 = 0", "1", &with_velocity_squared),
         // P. M. Mathews and M. Lakshmanan, Q. Appl. Math. 32 (1974) 215: omega^2 = 1/(1 + k*A^2).
-        ("(1 + x^2/2)*x'' - x*x'^2/2 + x = 0", "2/3", &|amplitude: f64| {
-            (1.0 + 0.5 * amplitude * amplitude).sqrt().recip()
-        }),
+        (
+            "(1 + x^2/2)*x'' - x*x'^2/2 + x = 0",
+            "2/3",
+            &|amplitude: f64| (1.0 + 0.5 * amplitude * amplitude).sqrt().recip(),
+        ),
     ];
     for (equation, amplitude, truth) in cases {
         let oscillator = Oscillator::parse(equation).unwrap();
@@ -292,7 +338,11 @@ fn what_velocities_add_has_its_range_and_its_backbone() {
                 let mut at = Values::default();
                 at.insert("A".into(), exact).unwrap();
                 let table = compare(&oscillator, &at, None, 0.01).unwrap();
-                let row = table.rows.iter().find(|row| row.solution.title() == title).unwrap();
+                let row = table
+                    .rows
+                    .iter()
+                    .find(|row| row.solution.title() == title)
+                    .unwrap();
                 row.frequency
                     .map_or(f64::INFINITY, |frequency| frequency / truth(size) - 1.0)
             };
@@ -304,17 +354,26 @@ fn what_velocities_add_has_its_range_and_its_backbone() {
     }
 }
 
-fn exact_frequency(oscillator: &Oscillator, amplitude: f64) -> Result<f64, lindstedt::numeric::period::PeriodError> {
+fn exact_frequency(
+    oscillator: &Oscillator,
+    amplitude: f64,
+) -> Result<f64, lindstedt::numeric::period::PeriodError> {
     let force = lindstedt::expr::CompiledFunction::new(&oscillator.force, &["x".into()]).unwrap();
     let force = |x: f64| force.call(&[x]);
     let force = lindstedt::numeric::period::Force::smooth(&force);
-    Ok(std::f64::consts::TAU / lindstedt::numeric::period::conservative_period(&force, 0.0, amplitude)?)
+    Ok(std::f64::consts::TAU
+        / lindstedt::numeric::period::conservative_period(&force, 0.0, amplitude)?)
 }
 
 #[test]
 fn the_sides_of_a_well_are_told_apart() {
-    let text =
-        |equation: &str, amplitude: &str| texts(&judged(equation, Method::LindstedtPoincare, &[("A", amplitude)]));
+    let text = |equation: &str, amplitude: &str| {
+        texts(&judged(
+            equation,
+            Method::LindstedtPoincare,
+            &[("A", amplitude)],
+        ))
+    };
     let quadratic = text("x'' + x - x^2 = 0", "1/4");
     assert!(
         quadratic.contains("periodic for -0.5 < A < 1: the separatrix"),
@@ -335,8 +394,15 @@ fn the_law_that_is_judged_is_named_and_the_other_has_its_own_error() {
         ..Options::default()
     };
     let solution = solve(&oscillator, &options).unwrap();
-    let found = judge(&oscillator, &solution, &values(&[("A", "2"), ("eps", "1")]), 0.01).unwrap();
-    // s = eps*A^2 = 4 in omega^2 = 1 + 3 s/4 - 3 s^2/128 + 9 s^3/512 - 1779 s^4/131072 and in its root, term by term.
+    let found = judge(
+        &oscillator,
+        &solution,
+        &values(&[("A", "2"), ("eps", "1")]),
+        0.01,
+    )
+    .unwrap();
+    // s = eps*A^2 = 4 in omega^2 = 1 + 3 s/4 - 3 s^2/128 + 9 s^3/512 - 1779 s^4/131072 and in its
+    // root, term by term.
     let (squared, truth) = (
         1.0 + 3.0 - 0.375 + 1.125 - 1779.0 * 256.0 / 131_072.0,
         found.true_frequency,
@@ -353,7 +419,8 @@ fn the_law_that_is_judged_is_named_and_the_other_has_its_own_error() {
 
 #[test]
 fn coefficients_of_many_digits_cost_no_more_than_short_ones() {
-    // With exact fractions each of these took from ten seconds to minutes; the series behind the ranges runs in rounded numbers.
+    // With exact fractions each of these took from ten seconds to minutes; the series behind the
+    // ranges runs in rounded numbers.
     for (equation, radius) in [
         (
             "x'' + 0.731*x + 0.4173*x^2 + 0.9131*x^3 + 0.3137*x^4 + 0.1717*x^5 = 0",
@@ -361,7 +428,11 @@ fn coefficients_of_many_digits_cost_no_more_than_short_ones() {
         ),
         ("x'' + asin(sin(x)) = 0", None),
     ] {
-        let found = texts(&judged(equation, Method::LindstedtPoincare, &[("A", "3/10")]));
+        let found = texts(&judged(
+            equation,
+            Method::LindstedtPoincare,
+            &[("A", "3/10")],
+        ));
         match radius {
             Some(radius) => assert!(found.contains(radius), "{found}"),
             None => assert!(!found.contains("converges"), "{found}"),
@@ -369,8 +440,9 @@ fn coefficients_of_many_digits_cost_no_more_than_short_ones() {
     }
 }
 
-/// The period against a pole, `V(u) = k (log u + d/u)` with `u = d - x`, by the double exponential rule in `log u`
-/// (H. Takahasi, M. Mori, Publ. RIMS 9 (1974) 721), with the distances from both turning points exact.
+/// The period against a pole, `V(u) = k (log u + d/u)` with `u = d - x`, by the double exponential
+/// rule in `log u` (H. Takahasi, M. Mori, Publ. RIMS 9 (1974) 721), with the distances from both
+/// turning points exact.
 fn against_a_pole(k: f64, d: f64, amplitude: f64) -> f64 {
     let far = d - amplitude;
     let level = |u: f64| u.ln() + d / u;
@@ -401,14 +473,22 @@ fn against_a_pole(k: f64, d: f64, amplitude: f64) -> f64 {
                 )
             } else {
                 let loss = -(-length * right).exp_m1();
-                (far * (1.0 - loss), length * right - loss * d / (far * (1.0 - loss)))
+                (
+                    far * (1.0 - loss),
+                    length * right - loss * d / (far * (1.0 - loss)),
+                )
             };
             length * PI * t.cosh() * left * right * u / (2.0 * k * fallen).sqrt()
         };
-        step * (-(3.3 / step) as i32..=(3.3 / step) as i32).map(point).sum::<f64>()
+        step * (-(3.3 / step) as i32..=(3.3 / step) as i32)
+            .map(point)
+            .sum::<f64>()
     };
     let (coarse, fine) = (rule(0.02), rule(0.01));
-    assert!((coarse / fine - 1.0).abs() < 1e-9, "{amplitude}: {coarse} {fine}");
+    assert!(
+        (coarse / fine - 1.0).abs() < 1e-9,
+        "{amplitude}: {coarse} {fine}"
+    );
     2.0 * fine
 }
 
@@ -439,7 +519,10 @@ fn a_motion_that_turns_close_to_a_pole_is_timed() {
         };
         let expected = std::f64::consts::TAU / against_a_pole(0.468, 0.962, start);
         let found = table.true_frequency.expect("a true frequency");
-        assert!((found / expected - 1.0).abs() < 1e-8, "{amplitude}: {found} {expected}");
+        assert!(
+            (found / expected - 1.0).abs() < 1e-8,
+            "{amplitude}: {found} {expected}"
+        );
         let exact = table
             .rows
             .iter()
@@ -450,7 +533,8 @@ fn a_motion_that_turns_close_to_a_pole_is_timed() {
     }
 }
 
-/// Whatever keeps the true motion from being known, every method has its row, and the reason is said.
+/// Whatever keeps the true motion from being known, every method has its row, and the reason is
+/// said.
 #[test]
 fn a_table_without_a_true_motion_has_all_its_rows() {
     let table = compared(
@@ -476,12 +560,16 @@ fn a_table_without_a_true_motion_has_all_its_rows() {
     assert!(known.rows.iter().all(|row| row.verdict.is_some()));
 }
 
-/// The motion of one term does not pass a pole, however weak it is beside the rest of the force; and it passes what only looks
-/// like one.
+/// The motion of one term does not pass a pole, however weak it is beside the rest of the force;
+/// and it passes what only looks like one.
 #[test]
 fn a_weak_pole_is_still_a_pole() {
     for (equation, amplitude, pole) in [
-        ("x'' + 0.386*(1/(91.7 - x) - 1/91.7) + x = 0", "43900000", true),
+        (
+            "x'' + 0.386*(1/(91.7 - x) - 1/91.7) + x = 0",
+            "43900000",
+            true,
+        ),
         ("x'' + x + 1/1000/(1 - x)^2 - 1/1000 = 0", "1e9", true),
         (
             "x'' + x + 1/(1e-8 + (x - 1)^2)/1000 - 1/1000/(1 + 1e-8) = 0",
@@ -502,7 +590,8 @@ fn a_weak_pole_is_still_a_pole() {
     }
 }
 
-/// A law in closed form has values where there is no motion, and terms beyond the range of doubles where there is one.
+/// A law in closed form has values where there is no motion, and terms beyond the range of doubles
+/// where there is one.
 #[test]
 fn laws_have_numbers_where_there_is_a_motion_and_only_there() {
     let at = |equation: &str, method: Method, order: Option<u32>, amplitude: f64| {
@@ -514,7 +603,8 @@ fn laws_have_numbers_where_there_is_a_motion_and_only_there() {
         };
         let solution = solve(&oscillator, &options).unwrap();
         let given = BTreeMap::from([(Symbol::new("A"), amplitude)]);
-        lindstedt::method::numbers::evaluate(&oscillator, &solution, &given).map(|found| found.frequency_squared)
+        lindstedt::method::numbers::evaluate(&oscillator, &solution, &given)
+            .map(|found| found.frequency_squared)
     };
     // The potential falls for good beyond its last maximum.
     for (equation, amplitude) in [
@@ -528,28 +618,40 @@ fn laws_have_numbers_where_there_is_a_motion_and_only_there() {
             matches!(&found, Err(reason) if reason.to_string().contains("no periodic motion")),
             "{equation}: {found:?}"
         );
-        assert!(at(equation, Method::Exact, None, 0.1 * amplitude).is_ok(), "{equation}");
+        assert!(
+            at(equation, Method::Exact, None, 0.1 * amplitude).is_ok(),
+            "{equation}"
+        );
     }
     // omega^2 = f'(A/2) = 6/cosh(3 A/2)^2.
     for amplitude in [1.0, 20.0, 100.0] {
-        let found = at("x'' + 2*tanh(3*x) = 0", Method::FrequencyFormula, None, amplitude).unwrap();
+        let found = at(
+            "x'' + 2*tanh(3*x) = 0",
+            Method::FrequencyFormula,
+            None,
+            amplitude,
+        )
+        .unwrap();
         let expected = 24.0 * (-3.0 * amplitude).exp() / (1.0 + (-3.0 * amplitude).exp()).powi(2);
         assert!(
             (found / expected - 1.0).abs() < 1e-13,
             "{amplitude}: {found} {expected}"
         );
     }
-    // With e = exp(-c A) the period is 4 K(1 - m) sech, 1 - m = 4 e/(1 + e)^2 and K(m) = ln 4 - ln(1 - m)/2 for tiny 1 - m.
+    // With e = exp(-c A) the period is 4 K(1 - m) sech, 1 - m = 4 e/(1 + e)^2 and K(m) = ln 4 -
+    // ln(1 - m)/2 for tiny 1 - m.
     for amplitude in [20.0, 60.0, 150.0] {
         let found = at("x'' + 2*sinh(3*x) = 0", Method::Exact, None, amplitude).unwrap();
         let complete = 4.0_f64.ln() + 0.5 * (3.0 * amplitude - 4.0_f64.ln());
-        let logarithm = (6.0_f64.sqrt() * PI / 2.0).ln() + 1.5 * amplitude - 2.0_f64.ln() - complete.ln();
+        let logarithm =
+            (6.0_f64.sqrt() * PI / 2.0).ln() + 1.5 * amplitude - 2.0_f64.ln() - complete.ln();
         assert!(
             (0.5 * found.ln() / logarithm - 1.0).abs() < 1e-13,
             "{amplitude}: {found}"
         );
     }
-    // A law does not depend on the unit of length: with x = 1e-12 u the coefficients overflow in its higher powers.
+    // A law does not depend on the unit of length: with x = 1e-12 u the coefficients overflow in
+    // its higher powers.
     let small = "x'' + 0.00678*x - 217e19*x^3 + 123e68*x^7 = 0";
     let plain = "x'' + 0.00678*x - 0.00217*x^3 + 0.0123*x^7 = 0";
     for method in [Method::IterationPerturbation, Method::HomotopyPerturbation] {
@@ -564,8 +666,9 @@ fn laws_have_numbers_where_there_is_a_motion_and_only_there() {
     }
 }
 
-/// A pole of the quotient before the amplitude asked for is the first crossing, however good the quotient is beyond it: for
-/// x + b x^5 + x^7, omega^2 = 1 + 5 b A^4/8 + 35 A^6/64 + ..., and [2/1] has its pole where A^2 = 8 b/7.
+/// A pole of the quotient before the amplitude asked for is the first crossing, however good the
+/// quotient is beyond it: for x + b x^5 + x^7, omega^2 = 1 + 5 b A^4/8 + 35 A^6/64 + ..., and [2/1]
+/// has its pole where A^2 = 8 b/7.
 #[test]
 fn a_pole_before_the_amplitude_ends_the_range() {
     for (b, amplitude) in [("0.0578", "2/5"), ("0.0578", "1/10"), ("0.05", "3/10")] {
@@ -592,9 +695,18 @@ fn a_motion_of_one_term_through_a_pole_does_not_apply() {
     assert!((truth / expected - 1.0).abs() < 1e-6, "{truth} {expected}");
     let mut through = 0;
     for row in &table.rows {
-        let one_term = row.solution.displacement.harmonics().iter().all(|entry| entry.0 <= 1);
+        let one_term = row
+            .solution
+            .displacement
+            .harmonics()
+            .iter()
+            .all(|entry| entry.0 <= 1);
         if one_term && row.solution.method != Method::Exact {
-            let reason = row.reason.as_ref().map(ToString::to_string).unwrap_or_default();
+            let reason = row
+                .reason
+                .as_ref()
+                .map(ToString::to_string)
+                .unwrap_or_default();
             assert!(
                 reason.contains("runs through x = 1"),
                 "{}: {reason}",
@@ -607,8 +719,9 @@ fn a_motion_of_one_term_through_a_pole_does_not_apply() {
     assert!(through >= 3, "{through}");
 }
 
-/// Harmonic balance is on the branch that starts from rest: with more harmonics it comes to the true frequency, its first
-/// harmonic is never nothing, and the frequency has no jumps along the amplitude.
+/// Harmonic balance is on the branch that starts from rest: with more harmonics it comes to the
+/// true frequency, its first harmonic is never nothing, and the frequency has no jumps along the
+/// amplitude.
 #[test]
 fn harmonic_balance_follows_the_branch_from_rest() {
     type Force = fn(f64) -> f64;
@@ -657,7 +770,10 @@ fn harmonic_balance_follows_the_branch_from_rest() {
             let motion = found.motion.expect("a motion");
             // The odd harmonics together.
             let first = 0.5 * (motion.evaluate(0.0) - motion.evaluate(std::f64::consts::PI));
-            assert!(first.abs() > 0.5 * amplitude, "{equation} {amplitude}: {first}");
+            assert!(
+                first.abs() > 0.5 * amplitude,
+                "{equation} {amplitude}: {first}"
+            );
         }
     }
     let oscillator = Oscillator::parse("x'' + x + 5*x^2 + 10*x^3 = 0").unwrap();
@@ -675,7 +791,11 @@ fn harmonic_balance_follows_the_branch_from_rest() {
         let law = lindstedt::method::numbers::evaluate(&oscillator, &solution, &at)
             .unwrap()
             .frequency_squared;
-        assert!((law.sqrt() - before).abs() < 0.06, "{k}: {} {before}", law.sqrt());
+        assert!(
+            (law.sqrt() - before).abs() < 0.06,
+            "{k}: {} {before}",
+            law.sqrt()
+        );
         before = law.sqrt();
         if k == 80 {
             assert!((before - 2.6597).abs() < 1e-3, "{before}");
@@ -683,7 +803,8 @@ fn harmonic_balance_follows_the_branch_from_rest() {
     }
 }
 
-/// Over the top of a pendulum beside a barrier: 1 - cos(A) + 2 gamma (A - xc)^(5/2)/5 > 2, and nothing turns it back.
+/// Over the top of a pendulum beside a barrier: 1 - cos(A) + 2 gamma (A - xc)^(5/2)/5 > 2, and
+/// nothing turns it back.
 #[test]
 fn a_pendulum_that_goes_over_the_top_is_said_not_to_come_back() {
     let equation = "x'' + sin(x) + gamma*(x - xc)^(3/2)*H(x - xc) = 0";
@@ -695,19 +816,29 @@ fn a_pendulum_that_goes_over_the_top_is_said_not_to_come_back() {
             .expect("values")
     };
     let refused = judge(&oscillator, &solution, &at("1"), 0.01).expect_err("it does not come back");
-    let escapes = matches!(refused, VerificationError::Period(PeriodError::Escapes { .. }));
+    let escapes = matches!(
+        refused,
+        VerificationError::Period(PeriodError::Escapes { .. })
+    );
     assert!(escapes, "{refused}");
     assert!(judge(&oscillator, &solution, &at("1/2"), 0.01).is_ok());
 }
 
-/// A law that is off near rest and good further out has a range about the amplitude, and the verdict changes at its ends.
+/// A law that is off near rest and good further out has a range about the amplitude, and the
+/// verdict changes at its ends.
 #[test]
 fn a_law_that_is_off_near_rest_has_a_range_further_out() {
     for equation in ["x'' + sgn(x) + x^3 = 0", "x'' + x + sgn(x)/2 = 0"] {
         let oscillator = Oscillator::parse(equation).expect(equation);
         let solution = solve(&oscillator, &Options::default()).expect(equation);
         let at = |amplitude: f64| {
-            judge(&oscillator, &solution, &values(&[("A", &amplitude.to_string())]), 0.01).expect(equation)
+            judge(
+                &oscillator,
+                &solution,
+                &values(&[("A", &amplitude.to_string())]),
+                0.01,
+            )
+            .expect(equation)
         };
         let asked = at(1.0);
         let range = asked
@@ -742,7 +873,8 @@ fn a_law_that_is_off_near_rest_has_a_range_further_out() {
     }
 }
 
-/// If the parameter that is small by default leaves a series nothing to expand in, the table has the series in the amplitude.
+/// If the parameter that is small by default leaves a series nothing to expand in, the table has
+/// the series in the amplitude.
 #[test]
 fn a_table_expands_in_the_amplitude_where_no_parameter_is_small() {
     for (equation, at) in [
@@ -750,7 +882,10 @@ fn a_table_expands_in_the_amplitude_where_no_parameter_is_small() {
             "x'' + x + eps*x^3 + d*x^2 = 0",
             vec![("A", "1/5"), ("eps", "1/10"), ("d", "1/5")],
         ),
-        ("x'' + x + eps*x^3 + x^5 = 0", vec![("A", "1/5"), ("eps", "1/10")]),
+        (
+            "x'' + x + eps*x^3 + x^5 = 0",
+            vec![("A", "1/5"), ("eps", "1/10")],
+        ),
         ("x'' + eps*x + x^3 = 0", vec![("A", "1/5"), ("eps", "1")]),
     ] {
         let table = compared(equation, &at);
@@ -758,7 +893,10 @@ fn a_table_expands_in_the_amplitude_where_no_parameter_is_small() {
         let row = rows.find(|row| row.solution.method == Method::LindstedtPoincare);
         let row = row.unwrap_or_else(|| panic!("{equation}: {:?}", table.refused));
         assert_eq!(row.solution.small_parameter, Symbol::new("A"), "{equation}");
-        assert!(row.relative_error.is_some_and(|error| error.abs() < 1e-4), "{equation}");
+        assert!(
+            row.relative_error.is_some_and(|error| error.abs() < 1e-4),
+            "{equation}"
+        );
     }
 }
 
@@ -777,8 +915,9 @@ fn every_formula_of_a_table_has_its_definitions() {
     }
 }
 
-/// A verdict says all that it is reached on: the frequency, and how far the motion is off where that is further; of a motion that decays the
-/// amplitude as well, which is judged with the frequency.
+/// A verdict says all that it is reached on: the frequency, and how far the motion is off where
+/// that is further; of a motion that decays the amplitude as well, which is judged with the
+/// frequency.
 #[test]
 fn a_verdict_says_what_it_is_reached_on() {
     let words = |equation: &str, method: Method, at: &str| {
@@ -799,15 +938,22 @@ fn a_verdict_says_what_it_is_reached_on() {
         Method::Averaging,
         "zeta = 1/100, A = 3/2",
     );
-    assert_eq!(decays, "fail: frequency within 1 %, amplitude off by 2.43 %");
-    let dry = words("x'' + x + alpha*sgn(x') = 0", Method::Averaging, "alpha = 1/100, A = 1");
+    assert_eq!(
+        decays,
+        "fail: frequency within 1 %, amplitude off by 2.43 %"
+    );
+    let dry = words(
+        "x'' + x + alpha*sgn(x') = 0",
+        Method::Averaging,
+        "alpha = 1/100, A = 1",
+    );
     assert_eq!(dry, "pass: frequency within 1 %, amplitude within 1 %");
     let small = words("x'' + x + x^3 = 0", Method::HarmonicBalance, "A = 1/10");
     assert_eq!(small, "pass (|relative error| <= 1 %)");
 }
 
-/// First harmonic of `A cn`: `A 2 pi/(k K) sqrt(q)/(1 + q)`, `q = exp(-pi K'/K)` (Abramowitz and Stegun, 16.23.2); Duffing's motion has
-/// `k^2 = eps A^2/(2 (1 + eps A^2))`.
+/// First harmonic of `A cn`: `A 2 pi/(k K) sqrt(q)/(1 + q)`, `q = exp(-pi K'/K)` (Abramowitz and
+/// Stegun, 16.23.2); Duffing's motion has `k^2 = eps A^2/(2 (1 + eps A^2))`.
 #[test]
 fn an_amplitude_of_the_other_convention_is_converted() {
     let (amplitude, eps) = (1.5_f64, 0.5_f64);
@@ -817,7 +963,12 @@ fn an_amplitude_of_the_other_convention_is_converted() {
     let first = amplitude * std::f64::consts::TAU / (m.sqrt() * quarter) * q.sqrt() / (1.0 + q);
     let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0").expect("an equation");
     for (convention, given, wanted, expected) in [
-        (AmplitudeConvention::FirstHarmonic, ("A", amplitude), "a", first),
+        (
+            AmplitudeConvention::FirstHarmonic,
+            ("A", amplitude),
+            "a",
+            first,
+        ),
         (AmplitudeConvention::Initial, ("a", first), "A", amplitude),
     ] {
         let options = Options {
@@ -872,7 +1023,11 @@ fn latex_says_what_a_verdict_is_reached_on() {
         let document = lindstedt::report::solution(&solution, Some(&found), 0.03);
         let latex = lindstedt::export::latex::document(&document);
         let both = found.verdict_on_both(0.03).is_some();
-        assert_eq!(latex.contains(&format!("verdict {words}\n")), both, "{words}: {latex}");
+        assert_eq!(
+            latex.contains(&format!("verdict {words}\n")),
+            both,
+            "{words}: {latex}"
+        );
         assert!(both || latex.contains("verdict pass\n"), "{latex}");
     }
 }

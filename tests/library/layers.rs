@@ -1,9 +1,11 @@
-//! A module uses only those that stand below it: the file tree is the way of the data. Between crates the compiler holds that;
-//! here it is held inside of them, and the wall between the judge and the methods with it.
+//! A module uses only those that stand below it: the file tree is the way of the data. Between
+//! crates the compiler holds that; here it is held inside of them, and the wall between the judge
+//! and the methods with it.
 //!
-//! Every path of a source that starts at the root of its crate is read: `crate::name`, `crate::{a, b::c}`, a chain of
-//! `super` long enough to reach the root, and the names that `lib.rs` hands on (`crate::Oscillator` is the module
-//! `oscillator`). Unit tests may look anywhere: they hold one layer against the others.
+//! Every path of a source that starts at the root of its crate is read: `crate::name`,
+//! `crate::{a, b::c}`, a chain of `super` long enough to reach the root, and the names that
+//! `lib.rs` hands on (`crate::Oscillator` is the module `oscillator`). Unit tests may look
+//! anywhere: they hold one layer against the others.
 
 use std::path::{Path, PathBuf};
 
@@ -11,11 +13,14 @@ use std::path::{Path, PathBuf};
 struct Layers(Vec<Vec<String>>);
 
 impl Layers {
-    /// The layers of the crates, lowest first: the modules of each `lib.rs` in order, those between two empty lines together, and on
-    /// top of them the program.
+    /// The layers of the crates, lowest first: the modules of each `lib.rs` in order, those between
+    /// two empty lines together, and on top of them the program.
     fn of_crates() -> Self {
         let mut layers: Vec<Vec<String>> = Vec::new();
-        let libraries: Vec<String> = source_folders().iter().map(|folder| library(folder)).collect();
+        let libraries: Vec<String> = source_folders()
+            .iter()
+            .map(|folder| library(folder))
+            .collect();
         for block in libraries.iter().flat_map(|library| library.split("\n\n")) {
             let names: Vec<String> = block.lines().filter_map(declared).collect();
             if !names.is_empty() {
@@ -33,7 +38,8 @@ impl Layers {
     }
 }
 
-/// The members of the workspace by the way of the data, lowest first; the package of the program stands above them all.
+/// The members of the workspace by the way of the data, lowest first; the package of the program
+/// stands above them all.
 const CRATES: [&str; 7] = [
     "numeric",
     "expr",
@@ -47,7 +53,9 @@ const CRATES: [&str; 7] = [
 /// The folders of sources, lowest crate first.
 fn source_folders() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let members = CRATES.iter().map(|name| root.join("crates").join(name).join("src"));
+    let members = CRATES
+        .iter()
+        .map(|name| root.join("crates").join(name).join("src"));
     members.chain([root.join("src")]).collect()
 }
 
@@ -62,7 +70,10 @@ fn sources() -> Vec<(PathBuf, PathBuf)> {
     let mut sources = Vec::new();
     for folder in source_folders() {
         for file in source_files(&folder) {
-            let inside = file.strip_prefix(&folder).expect("a file in src").to_path_buf();
+            let inside = file
+                .strip_prefix(&folder)
+                .expect("a file in src")
+                .to_path_buf();
             sources.push((file, inside));
         }
     }
@@ -105,7 +116,9 @@ fn uses(source: &Source, handed_on: &[(String, String)]) -> Vec<Use> {
     for root in &roots {
         for (place, _) in code.match_indices(root.as_str()) {
             let before = code[..place].chars().next_back();
-            if before.is_some_and(|letter| letter.is_alphanumeric() || letter == '_' || letter == ':') {
+            if before
+                .is_some_and(|letter| letter.is_alphanumeric() || letter == '_' || letter == ':')
+            {
                 continue;
             }
             let line = code[..place].matches('\n').count() + 1;
@@ -122,7 +135,10 @@ fn uses(source: &Source, handed_on: &[(String, String)]) -> Vec<Use> {
         let handed = handed_on.iter().find(|entry| entry.0 == name);
         handed.map_or(name, |entry| entry.1.clone())
     };
-    found.into_iter().map(|(line, name)| (line, module(name))).collect()
+    found
+        .into_iter()
+        .map(|(line, name)| (line, module(name)))
+        .collect()
 }
 
 /// `a` of `a::b`, or `a` and `c` of `{a::b, c::{d, e}}`.
@@ -218,7 +234,8 @@ fn source_files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// The names on the way from the root of the crate to a file: `series, taylor`; `mod.rs` is its folder.
+/// The names on the way from the root of the crate to a file: `series, taylor`; `mod.rs` is its
+/// folder.
 fn module_path(inside: &Path) -> Vec<String> {
     let names = inside.with_extension("");
     let names = names
@@ -231,7 +248,10 @@ fn module_path(inside: &Path) -> Vec<String> {
 fn lower_layers_never_use_upper_ones() {
     let handed_on = all_handed_on();
     for name in ["Oscillator", "Motion", "Method", "judge"] {
-        assert!(handed_on.iter().any(|entry| entry.0 == name), "{name}: {handed_on:?}");
+        assert!(
+            handed_on.iter().any(|entry| entry.0 == name),
+            "{name}: {handed_on:?}"
+        );
     }
     let layers = Layers::of_crates();
     let (mut wrong, mut seen, mut uses_seen) = (Vec::new(), Vec::new(), 0);
@@ -255,10 +275,18 @@ fn lower_layers_never_use_upper_ones() {
             ));
         }
         let offences = offences(&source, &handed_on, &layers);
-        wrong.extend(offences.iter().map(|offence| format!("{}:{offence}", file.display())));
+        wrong.extend(
+            offences
+                .iter()
+                .map(|offence| format!("{}:{offence}", file.display())),
+        );
         seen.push(module.to_owned());
     }
-    assert!(wrong.is_empty(), "the layers are broken:\n{}", wrong.join("\n"));
+    assert!(
+        wrong.is_empty(),
+        "the layers are broken:\n{}",
+        wrong.join("\n")
+    );
     assert!(
         seen.len() > 30 && uses_seen > 100,
         "only {} files with {uses_seen} uses",
@@ -270,22 +298,32 @@ fn lower_layers_never_use_upper_ones() {
     assert!(empty.is_empty(), "no file belongs to {empty:?}");
 }
 
-/// The members of the workspace are those that are held here, and each uses only those before it: what the compiler holds is
-/// the order that is told.
+/// The members of the workspace are those that are held here, and each uses only those before it:
+/// what the compiler holds is the order that is told.
 #[test]
 fn crates_use_only_those_before_them() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folders = std::fs::read_dir(root.join("crates")).expect("crates");
     let mut folders: Vec<String> = folders
-        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .map(|entry| {
+            entry
+                .expect("an entry")
+                .file_name()
+                .to_string_lossy()
+                .into_owned()
+        })
         .collect();
     folders.sort();
     let mut named = CRATES.to_vec();
     named.sort_unstable();
     assert_eq!(folders, named);
     for (place, name) in CRATES.iter().enumerate() {
-        let manifest = std::fs::read_to_string(root.join("crates").join(name).join("Cargo.toml")).expect("a manifest");
-        let used = manifest.split("[dependencies]").nth(1).expect("dependencies");
+        let manifest = std::fs::read_to_string(root.join("crates").join(name).join("Cargo.toml"))
+            .expect("a manifest");
+        let used = manifest
+            .split("[dependencies]")
+            .nth(1)
+            .expect("dependencies");
         let used = used.split("[dev-dependencies]").next().unwrap_or(used);
         for line in used.lines() {
             let Some(used) = line.strip_prefix("lindstedt-") else {
@@ -297,7 +335,8 @@ fn crates_use_only_those_before_them() {
     }
 }
 
-/// The documentation of the crate lists the modules that it hands on, and `ARCHITECTURE.md` all modules crate by crate.
+/// The documentation of the crate lists the modules that it hands on, and `ARCHITECTURE.md` all
+/// modules crate by crate.
 #[test]
 fn one_order_is_told_everywhere() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -327,7 +366,9 @@ fn one_order_is_told_everywhere() {
         let modules: Vec<String> = text.lines().filter_map(declared).collect();
         let told = |line: &&str| {
             let words: Vec<&str> = line.split_whitespace().collect();
-            modules.iter().all(|module| words.contains(&module.as_str()))
+            modules
+                .iter()
+                .all(|module| words.contains(&module.as_str()))
         };
         assert!(
             page.lines().any(|line| told(&line)),
@@ -336,12 +377,15 @@ fn one_order_is_told_everywhere() {
     }
 }
 
-/// In `numeric` Runge-Kutta stands below the periods and the limit cycles, which do not use each other.
+/// In `numeric` Runge-Kutta stands below the periods and the limit cycles, which do not use each
+/// other.
 #[test]
 fn motions_in_numbers_stand_on_runge_kutta_alone() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/numeric/src/numeric");
     let used = |text: &str| {
-        let names = |name: &&str| text.contains(&format!("{name}::")) || text.contains(&format!("numeric::{name};"));
+        let names = |name: &&str| {
+            text.contains(&format!("{name}::")) || text.contains(&format!("numeric::{name};"))
+        };
         ["ode", "period", "return_map"]
             .into_iter()
             .filter(names)
@@ -358,15 +402,20 @@ fn motions_in_numbers_stand_on_runge_kutta_alone() {
     }
 }
 
-/// Printed equations, tables and numbers of a publication are data of the audit: no crate has a name for one.
+/// Printed equations, tables and numbers of a publication are data of the audit: no crate has a
+/// name for one.
 #[test]
 fn the_engine_holds_no_publication() {
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates");
     let mut held = Vec::new();
-    for (file, _) in sources().into_iter().filter(|(file, _)| file.starts_with(&crates)) {
+    for (file, _) in sources()
+        .into_iter()
+        .filter(|(file, _)| file.starts_with(&crates))
+    {
         let text = std::fs::read_to_string(&file).expect("a source file");
-        let numbered =
-            |(place, name): (usize, &str)| text[place + name.len()..].starts_with(|digit: char| digit.is_ascii_digit());
+        let numbered = |(place, name): (usize, &str)| {
+            text[place + name.len()..].starts_with(|digit: char| digit.is_ascii_digit())
+        };
         let of_a_table = ["Table ", "TABLE_"]
             .iter()
             .any(|name| text.match_indices(name).any(numbered));
@@ -377,20 +426,27 @@ fn the_engine_holds_no_publication() {
     assert_eq!(held, Vec::<PathBuf>::new());
 }
 
-/// The crate of the integers of any length is named where numbers live: elsewhere they are `exact::Integer`.
+/// The crate of the integers of any length is named where numbers live: elsewhere they are
+/// `exact::Integer`.
 #[test]
 fn long_integers_come_from_one_place() {
     let named = |(file, _): &(PathBuf, PathBuf)| {
         let text = std::fs::read_to_string(file).expect("a source file");
-        ["dashu_int", "num_rational"].iter().any(|name| text.contains(name))
+        ["dashu_int", "num_rational"]
+            .iter()
+            .any(|name| text.contains(name))
     };
-    let files = sources().into_iter().filter(named).map(|(_, inside)| inside);
+    let files = sources()
+        .into_iter()
+        .filter(named)
+        .map(|(_, inside)| inside);
     let (inside, outside): (Vec<_>, Vec<_>) = files.partition(|file| file.starts_with("exact"));
     assert!(!inside.is_empty());
     assert_eq!(outside, Vec::<PathBuf>::new());
 }
 
-/// The files that make the judge's truth. They know which motion is meant, never how a formula came about.
+/// The files that make the judge's truth. They know which motion is meant, never how a formula came
+/// about.
 const TRUTH: [&str; 7] = [
     "numeric/period.rs",
     "numeric/periodic.rs",
@@ -401,16 +457,19 @@ const TRUTH: [&str; 7] = [
     "verify/orbit.rs",
 ];
 
-/// What those in `verify` may use of it besides each other: the error type that they share with the judge.
+/// What those in `verify` may use of it besides each other: the error type that they share with the
+/// judge.
 const OF_THE_JUDGE: [&str; 1] = ["VerificationError"];
 
 /// What they may use of `solution`: plain data.
 const OF_AN_ANSWER: [&str; 1] = ["AmplitudeConvention"];
 
-/// The modules of `numeric` that are truth as a whole: the judge alone uses them, so that no answer comes by a detour.
+/// The modules of `numeric` that are truth as a whole: the judge alone uses them, so that no answer
+/// comes by a detour.
 const TRUE_MODULES: [&str; 3] = ["period", "periodic", "return_map"];
 
-/// What crosses the wall between the methods and the truth, as messages: `file` is the path of a source in `src/`.
+/// What crosses the wall between the methods and the truth, as messages: `file` is the path of a
+/// source in `src/`.
 fn over_the_wall(file: &str, text: &str, handed_on: &[(String, String)]) -> Vec<String> {
     let names = module_path(Path::new(file));
     let source = Source {
@@ -445,7 +504,8 @@ fn over_the_wall(file: &str, text: &str, handed_on: &[(String, String)]) -> Vec<
     if makes_truth {
         let stem = |file: &&str| module_path(Path::new(file)).pop().unwrap_or_default();
         let truths: Vec<String> = TRUTH.iter().map(stem).collect();
-        let of_verify = |name: &str| OF_THE_JUDGE.contains(&name) || truths.iter().any(|truth| truth == name);
+        let of_verify =
+            |name: &str| OF_THE_JUDGE.contains(&name) || truths.iter().any(|truth| truth == name);
         refuse("super::", &of_verify);
         refuse("crate::verify::", &of_verify);
         refuse("crate::solution::", &|name| OF_AN_ANSWER.contains(&name));
@@ -453,7 +513,8 @@ fn over_the_wall(file: &str, text: &str, handed_on: &[(String, String)]) -> Vec<
         for (line, name) in uses(&source, handed_on) {
             let root = format!("crate::{name}::");
             // By any other path it is not seen what of it is used.
-            let hidden = ["solution", "verify"].contains(&name.as_str()) && !lines[line - 1].contains(&root);
+            let hidden =
+                ["solution", "verify"].contains(&name.as_str()) && !lines[line - 1].contains(&root);
             if name == "method" || hidden {
                 found.push(format!("{line}: uses `{name}`"));
             }
@@ -475,15 +536,24 @@ fn the_judge_and_the_methods_share_no_truth() {
         let crossed = over_the_wall(&file, &text, &handed_on);
         wrong.extend(crossed.iter().map(|message| format!("{file}:{message}")));
     }
-    assert!(wrong.is_empty(), "the wall is broken:\n{}", wrong.join("\n"));
+    assert!(
+        wrong.is_empty(),
+        "the wall is broken:\n{}",
+        wrong.join("\n")
+    );
     assert_eq!(truths, TRUTH.len(), "a file of the truth is gone");
 }
 
 #[test]
 fn a_hole_in_the_wall_is_seen() {
-    let handed_on = handed_on("pub use method::{Options, solve};\npub use solution::{Method, Solution};\n");
+    let handed_on =
+        handed_on("pub use method::{Options, solve};\npub use solution::{Method, Solution};\n");
     for (file, text, expected) in [
-        ("numeric/period.rs", "use crate::method::numbers;", "1: uses `method`"),
+        (
+            "numeric/period.rs",
+            "use crate::method::numbers;",
+            "1: uses `method`",
+        ),
         (
             "numeric/return_map.rs",
             "\nlet law = crate::solve(&x);",
@@ -509,7 +579,11 @@ fn a_hole_in_the_wall_is_seen() {
             "use crate::verify::judge;",
             "1: uses `crate::verify::judge`",
         ),
-        ("verify/backbone.rs", "use crate::Solution;", "1: uses `solution`"),
+        (
+            "verify/backbone.rs",
+            "use crate::Solution;",
+            "1: uses `solution`",
+        ),
         (
             "verify/free_motion.rs",
             "use crate::{solution::Law, symbol};",
@@ -569,12 +643,29 @@ fn a_hole_in_the_wall_is_seen() {
 
 #[test]
 fn an_upward_use_is_seen() {
-    let handed_on = handed_on("pub use oscillator::Oscillator;\npub mod numeric;\npub use symbol::Symbol;\n");
+    let handed_on =
+        handed_on("pub use oscillator::Oscillator;\npub mod numeric;\npub use symbol::Symbol;\n");
     let layers = Layers::of_crates();
-    let found = |module: &str, depth: usize, text: &str| offences(&Source { module, depth, text }, &handed_on, &layers);
+    let found = |module: &str, depth: usize, text: &str| {
+        offences(
+            &Source {
+                module,
+                depth,
+                text,
+            },
+            &handed_on,
+            &layers,
+        )
+    };
     for (module, depth, text, line, used) in [
         ("series", 2, "use crate::method::solve;", 1, "method"),
-        ("numeric", 3, "\nlet x = crate::expr::Expr::zero();", 2, "expr"),
+        (
+            "numeric",
+            3,
+            "\nlet x = crate::expr::Expr::zero();",
+            2,
+            "expr",
+        ),
         ("numeric", 1, "use crate::exact::Rational;", 1, "exact"),
         (
             "exact",
@@ -584,7 +675,13 @@ fn an_upward_use_is_seen() {
             "verify",
         ),
         ("expr", 1, "use crate::Oscillator;", 1, "oscillator"),
-        ("expr", 3, "use super::super::super::series::taylor;", 1, "series"),
+        (
+            "expr",
+            3,
+            "use super::super::super::series::taylor;",
+            1,
+            "series",
+        ),
         ("symbol", 1, "use super::exact::Ring;", 1, "exact"),
         ("export", 2, "crate::cli::run()", 1, "cli"),
         (
@@ -601,14 +698,22 @@ fn an_upward_use_is_seen() {
         assert!(offences[0].starts_with(&expected), "{text}: {offences:?}");
     }
     for (module, depth, text) in [
-        ("method", 2, "use crate::series::taylor::taylor; // crate::verify"),
+        (
+            "method",
+            2,
+            "use crate::series::taylor::taylor; // crate::verify",
+        ),
         (
             "method",
             2,
             "use super::secular::expand;\nuse crate::{Symbol, expr::Expr};",
         ),
         ("expr", 2, "use crate::expr::Node;\nuse super::number;"),
-        ("cli", 2, "use lindstedt::export::{json, text};\nuse super::Common;"),
+        (
+            "cli",
+            2,
+            "use lindstedt::export::{json, text};\nuse super::Common;",
+        ),
         (
             "exact",
             2,
@@ -632,26 +737,51 @@ fn files_below(folder: &Path, found: &mut Vec<String>) {
     }
 }
 
-/// Names that Windows keeps for devices or does not allow, and names that differ by case alone, cannot be checked out everywhere.
+/// Names that Windows keeps for devices or does not allow, and names that differ by case alone,
+/// cannot be checked out everywhere.
 #[test]
 fn every_file_can_be_checked_out_on_every_system() {
     const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "conin$", "conout$"];
     let mut files = Vec::new();
-    for folder in ["src", "crates", "tests", "examples", "docs", "snapshots", "benches"] {
+    for folder in [
+        "src",
+        "crates",
+        "tests",
+        "examples",
+        "docs",
+        "snapshots",
+        "benches",
+    ] {
         files_below(Path::new(folder), &mut files);
     }
     assert!(files.len() > 1000, "{}", files.len());
     let mut lower = std::collections::BTreeSet::new();
     for file in &files {
-        let name = file.rsplit(['/', '\\']).next().unwrap_or(file).to_lowercase();
+        let name = file
+            .rsplit(['/', '\\'])
+            .next()
+            .unwrap_or(file)
+            .to_lowercase();
         let stem = name.split('.').next().unwrap_or(&name);
         let is_port = |stem: &str| {
             let number = stem.strip_prefix("com").or(stem.strip_prefix("lpt"));
-            number.is_some_and(|number| number.len() == 1 && number.chars().all(|digit| digit.is_ascii_digit()))
+            number.is_some_and(|number| {
+                number.len() == 1 && number.chars().all(|digit| digit.is_ascii_digit())
+            })
         };
-        assert!(!DEVICES.contains(&stem) && !is_port(stem), "{file} is a device");
-        let is_allowed = |letter: char| (' '..='~').contains(&letter) && !r#"<>:"|?*"#.contains(letter);
-        assert!(name.chars().all(is_allowed) && !name.ends_with(['.', ' ']), "{file}");
-        assert!(lower.insert(file.to_lowercase()), "{file} differs by case alone");
+        assert!(
+            !DEVICES.contains(&stem) && !is_port(stem),
+            "{file} is a device"
+        );
+        let is_allowed =
+            |letter: char| (' '..='~').contains(&letter) && !r#"<>:"|?*"#.contains(letter);
+        assert!(
+            name.chars().all(is_allowed) && !name.ends_with(['.', ' ']),
+            "{file}"
+        );
+        assert!(
+            lower.insert(file.to_lowercase()),
+            "{file} differs by case alone"
+        );
     }
 }

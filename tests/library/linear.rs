@@ -32,7 +32,12 @@ fn motion(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> [Expr; 3] {
         .defined_values(&|name| numbers.get(&name).copied())
         .expect("definitions");
     numbers.extend(defined);
-    let exact = |(name, value): (&Symbol, &f64)| (*name, format!("{value:.17}").parse::<Expr>().expect("a number"));
+    let exact = |(name, value): (&Symbol, &f64)| {
+        (
+            *name,
+            format!("{value:.17}").parse::<Expr>().expect("a number"),
+        )
+    };
     let place = place
         .substitute_all(&numbers.iter().map(exact).collect())
         .expect("numbers");
@@ -76,9 +81,14 @@ fn exact_motions_satisfy_their_equations() {
         for k in 0..40 {
             let t = 0.37 * f64::from(k);
             let time = BTreeMap::from([(Symbol::new("t"), t)]);
-            let [x, v, b] = [&place, &speed, &rate].map(|part| part.evaluate(&time).expect("a number"));
+            let [x, v, b] =
+                [&place, &speed, &rate].map(|part| part.evaluate(&time).expect("a number"));
             let mut point = numbers.clone();
-            point.extend([("t".into(), t), ("x".into(), x), (Symbol::new("x").derivative(), v)]);
+            point.extend([
+                ("t".into(), t),
+                ("x".into(), x),
+                (Symbol::new("x").derivative(), v),
+            ]);
             let force = oscillator.force.evaluate(&point).expect("a force");
             assert!(
                 (b + force).abs() < 1e-10 * (1.0 + force.abs()),
@@ -86,7 +96,10 @@ fn exact_motions_satisfy_their_equations() {
             );
             if k == 0 {
                 let start = numbers[&Symbol::new("A")];
-                assert!((x - start).abs() < 1e-12 && v.abs() < 1e-12, "{equation}: {x} {v}");
+                assert!(
+                    (x - start).abs() < 1e-12 && v.abs() < 1e-12,
+                    "{equation}: {x} {v}"
+                );
             }
         }
         let judged = judge(&oscillator, &solution, &values, 1e-6).expect(equation);
@@ -104,12 +117,16 @@ fn the_damped_frequency_is_that_of_textbooks() {
         .definitions
         .iter()
         .find(|known| Expr::from(known.symbol) == slow.phase_rate);
-    assert_eq!(frequency.expect("omega_d").meaning.to_string(), "sqrt(1 - zeta^2)");
+    assert_eq!(
+        frequency.expect("omega_d").meaning.to_string(),
+        "sqrt(1 - zeta^2)"
+    );
     let transient = slow.transient.as_ref().expect("a closed form");
     assert_eq!(transient.amplitude.to_string(), "a0*exp(-zeta*t)");
 }
 
-/// A drive at the frequency of an undamped oscillator is named, and the motion grows in proportion to time.
+/// A drive at the frequency of an undamped oscillator is named, and the motion grows in proportion
+/// to time.
 #[test]
 fn resonance_of_an_undamped_oscillator_is_named() {
     let (_, solution) = answered("x'' + x = cos(t)");
@@ -126,7 +143,9 @@ fn resonance_of_an_undamped_oscillator_is_named() {
     let (_, solution) = answered("x'' + w^2*x = F*cos(W*t)");
     let notes: Vec<String> = solution.validity.iter().map(ToString::to_string).collect();
     assert!(
-        notes.iter().any(|note| note.contains("only where W^2 is not w^2")),
+        notes
+            .iter()
+            .any(|note| note.contains("only where W^2 is not w^2")),
         "{notes:?}"
     );
 }
@@ -150,7 +169,8 @@ fn an_expansion_that_is_asked_for_stays_one() {
     }
 }
 
-/// A free linear motion is answered as what it is: no order, nothing cut off, and the law of its letters.
+/// A free linear motion is answered as what it is: no order, nothing cut off, and the law of its
+/// letters.
 #[test]
 fn free_linear_equations_are_answered_exactly() {
     for (equation, law, motion) in [
@@ -162,7 +182,11 @@ fn free_linear_equations_are_answered_exactly() {
         let (_, solution) = answered(equation);
         assert_eq!(solution.formula(), law, "{equation}");
         assert_eq!(
-            solution.closed_motion.as_ref().expect("a motion").to_string(),
+            solution
+                .closed_motion
+                .as_ref()
+                .expect("a motion")
+                .to_string(),
             motion,
             "{equation}"
         );
@@ -180,7 +204,11 @@ fn free_linear_equations_are_answered_exactly() {
             ..Options::default()
         };
         let oscillator = Oscillator::parse(equation).expect(equation);
-        lindstedt::export::text::solution(&solve(&oscillator, &options).expect(equation), None, 0.01)
+        lindstedt::export::text::solution(
+            &solve(&oscillator, &options).expect(equation),
+            None,
+            0.01,
+        )
     };
     assert!(!text("x'' + 4*x = 0").contains("truncated"));
     assert!(text("x'' + 4*x + x^3 = 0").contains("truncated"));

@@ -1,13 +1,14 @@
 //! Derived series against published ones.
 //!
-//! - Duffing: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapter 2, and the expansion of the exact
-//!   frequency pi sqrt(1 + s) / (2 K(s/(2 + 2 s))).
+//! - Duffing: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapter 2, and the
+//!   expansion of the exact frequency pi sqrt(1 + s) / (2 K(s/(2 + 2 s))).
 //! - Pendulum: the expansion of pi / (2 K(sin^2(A/2))).
 //! - Van der Pol: C. M. Andersen, J. F. Geer, SIAM J. Appl. Math. 42 (1982) 678-693.
-//! - Complete elliptic integrals as power series: *NIST Digital Library of Mathematical Functions*, 19.5.1 and 19.5.2.
+//! - Complete elliptic integrals as power series: *NIST Digital Library of Mathematical
+//!   Functions*, 19.5.1 and 19.5.2.
 //!
-//! Where a period is an elliptic integral, its series is an independent truth to any order; the judge then measures the
-//! error that remains and the exponent with which it vanishes.
+//! Where a period is an elliptic integral, its series is an independent truth to any order; the
+//! judge then measures the error that remains and the exponent with which it vanishes.
 
 use std::f64::consts::PI;
 
@@ -69,7 +70,10 @@ fn duffing_to_order_eight() {
     let solution = derive("x'' + x + eps*x^3 = 0", 8, None);
     let expected = "1 + 3/8*s - 21/256*s^2 + 81/2048*s^3 - 6549/262144*s^4 + 37737/2097152*s^5 - 936183/67108864*s^6 \
                     + 6077907/536870912*s^7 - 2604833685/274877906944*s^8";
-    assert_eq!(*law(&solution), polynomial(&expected.replace('s', "(eps*A^2)")));
+    assert_eq!(
+        *law(&solution),
+        polynomial(&expected.replace('s', "(eps*A^2)"))
+    );
     let expected = "1 + 3/4*s - 3/128*s^2 + 9/512*s^3 - 1779/131072*s^4 + 5643/524288*s^5 - 146661/16777216*s^6 \
                     + 486603/67108864*s^7";
     let eps = Symbol::new("eps");
@@ -82,15 +86,26 @@ fn duffing_to_order_eight() {
 #[test]
 fn duffing_motion_to_order_five() {
     let solution = derive("x'' + x + eps*x^3 = 0", 5, None);
-    // Coefficients of cos k theta in u_1 ... u_5 at A = 1, over the denominators 32, 1024, 32768, 2^20, 2^25.
+    // Coefficients of cos k theta in u_1 ... u_5 at A = 1, over the denominators 32, 1024, 32768,
+    // 2^20, 2^25.
     let orders: [(i64, &[(usize, i64)]); 5] = [
         (32, &[(3, 1), (1, -1)]),
         (1024, &[(5, 1), (3, -24), (1, 23)]),
         (32_768, &[(7, 1), (5, -48), (3, 594), (1, -547)]),
-        (1_048_576, &[(9, 1), (7, -72), (5, 1766), (3, -15_121), (1, 13_426)]),
+        (
+            1_048_576,
+            &[(9, 1), (7, -72), (5, 1766), (3, -15_121), (1, 13_426)],
+        ),
         (
             33_554_432,
-            &[(11, 1), (9, -96), (7, 3514), (5, -58_944), (3, 394_701), (1, -339_176)],
+            &[
+                (11, 1),
+                (9, -96),
+                (7, 3514),
+                (5, -58_944),
+                (3, 394_701),
+                (1, -339_176),
+            ],
         ),
     ];
     for (index, (denominator, coefficients)) in orders.iter().enumerate() {
@@ -119,7 +134,8 @@ fn both_amplitude_conventions_and_the_way_between_them() {
     let by_first_harmonic = derive(equation, 3, FIRST_HARMONIC);
     let expected = polynomial("1 + 3*eps*a^2/8 - 15*eps^2*a^4/256 + 123*eps^3*a^6/8192");
     assert_eq!(*law(&by_first_harmonic), expected);
-    // a = A (1 - s/32 + ...) is the first harmonic of the motion by A; put into the law by a it gives the law by A.
+    // a = A (1 - s/32 + ...) is the first harmonic of the motion by A; put into the law by a it
+    // gives the law by A.
     let (eps, a) = (Symbol::new("eps"), Symbol::new("a"));
     let initial = derive(equation, 3, INITIAL);
     let first_harmonic = cosine(&initial, 1);
@@ -137,12 +153,19 @@ fn both_amplitude_conventions_and_the_way_between_them() {
 fn pendulum_to_the_tenth_power() {
     let solution = derive("x'' + sin(x) = 0", 10, None);
     let expected = "1 - A^2/16 + A^4/3072 - 23*A^6/737280 - 2519*A^8/1321205760";
-    assert_eq!(law(&solution).truncated("A".into(), 8), polynomial(expected));
+    assert_eq!(
+        law(&solution).truncated("A".into(), 8),
+        polynomial(expected)
+    );
     let expected = "1 - A^2/8 + 7*A^4/1536 - 19*A^6/184320 + 127*A^8/660602880";
-    assert_eq!(law_squared(&solution).truncated("A".into(), 8), polynomial(expected));
+    assert_eq!(
+        law_squared(&solution).truncated("A".into(), 8),
+        polynomial(expected)
+    );
     // T/(2 pi) times omega is one, to A^10.
     let period = "1 + A^2/16 + 11*A^4/3072 + 173*A^6/737280 + 22931*A^8/1321205760 + 1319183*A^10/951268147200";
-    let product = parse_expression(&format!("({period})*({})", law(&solution))).expect("an expression");
+    let product =
+        parse_expression(&format!("({period})*({})", law(&solution))).expect("an expression");
     let product = product
         .to_polynomial(&mut |_| None)
         .expect("short")
@@ -157,13 +180,19 @@ fn cubic_pendulum_is_the_papers_model() {
         law_squared(&solution).truncated("A".into(), 4),
         polynomial("1 - A^2/8 - A^4/1536")
     );
-    assert_eq!(*law(&solution), polynomial("1 - A^2/16 - 7*A^4/3072 - 3*A^6/16384"));
+    assert_eq!(
+        *law(&solution),
+        polynomial("1 - A^2/16 - 7*A^4/3072 - 3*A^6/16384")
+    );
 }
 
 #[test]
 fn quadratic_force_by_either_convention() {
     let initial = derive("x'' + x + eps*x^2 = 0", 3, INITIAL);
-    assert_eq!(*law(&initial), polynomial("1 - 5*eps^2*A^2/12 - 5*eps^3*A^3/18"));
+    assert_eq!(
+        *law(&initial),
+        polynomial("1 - 5*eps^2*A^2/12 - 5*eps^3*A^3/18")
+    );
     // The odd power is the convention's alone.
     let first_harmonic = derive("x'' + x + eps*x^2 = 0", 3, FIRST_HARMONIC);
     assert_eq!(*law(&first_harmonic), polynomial("1 - 5*eps^2*a^2/12"));
@@ -174,7 +203,11 @@ fn van_der_pol_to_order_eight() {
     let solution = derive("x'' - mu*(1 - x^2)*x' + x = 0", 8, INITIAL);
     let expected = "1 - mu^2/16 + 17*mu^4/3072 + 35*mu^6/884736 - 678899*mu^8/5096079360";
     assert_eq!(*law(&solution), polynomial(expected));
-    let amplitude = &solution.limit_cycle.as_ref().expect("a limit cycle").amplitude;
+    let amplitude = &solution
+        .limit_cycle
+        .as_ref()
+        .expect("a limit cycle")
+        .amplitude;
     let expected = "2 + mu^2/96 - 1033*mu^4/552960 + 1019689*mu^6/55738368000 + 9835512276689*mu^8/157315969843200000";
     assert_eq!(*amplitude, polynomial(expected));
     // x_1 = (3 sin tau - sin 3 tau)/4, x_2 = (-12 cos tau + 18 cos 3 tau - 5 cos 5 tau)/96.
@@ -188,10 +221,15 @@ fn van_der_pol_to_order_eight() {
 
 #[test]
 fn rayleigh_has_the_frequency_of_van_der_pol() {
-    // The derivative of a solution of Rayleigh's equation solves van der Pol's, so the periods agree exactly.
+    // The derivative of a solution of Rayleigh's equation solves van der Pol's, so the periods
+    // agree exactly.
     let van_der_pol = derive("x'' - mu*(1 - x^2)*x' + x = 0", 8, None);
     for rayleigh in ["x'' + x = mu*(1 - x'^2/3)*x'", "x'' + x = mu*(1 - x'^2)*x'"] {
-        assert_eq!(law(&derive(rayleigh, 8, None)), law(&van_der_pol), "{rayleigh}");
+        assert_eq!(
+            law(&derive(rayleigh, 8, None)),
+            law(&van_der_pol),
+            "{rayleigh}"
+        );
     }
     let scaled = derive("x'' + x = mu*(1 - x'^2)*x'", 2, None);
     let root = scaled
@@ -199,7 +237,10 @@ fn rayleigh_has_the_frequency_of_van_der_pol() {
         .iter()
         .find(|definition| definition.symbol.name() == "a0")
         .expect("an irrational root");
-    assert_eq!(root.meaning, parse_expression("sqrt(4/3)").expect("an expression"));
+    assert_eq!(
+        root.meaning,
+        parse_expression("sqrt(4/3)").expect("an expression")
+    );
 }
 
 #[test]
@@ -214,10 +255,13 @@ fn a_symbolic_linear_frequency() {
 
 #[test]
 fn mathews_and_lakshmanan_exactly() {
-    // (1 + x^2) x'' - x x'^2 + x = 0 is solved by A cos(omega t), omega^2 = 1/(1 + A^2): P. M. Mathews and
-    // M. Lakshmanan, Quart. Appl. Math. 32 (1974) 215.
+    // (1 + x^2) x'' - x x'^2 + x = 0 is solved by A cos(omega t), omega^2 = 1/(1 + A^2): P. M.
+    // Mathews and M. Lakshmanan, Quart. Appl. Math. 32 (1974) 215.
     let solution = derive("(1 + x^2)*x'' - x*x'^2 + x = 0", 8, None);
-    assert_eq!(*law_squared(&solution), polynomial("1 - A^2 + A^4 - A^6 + A^8"));
+    assert_eq!(
+        *law_squared(&solution),
+        polynomial("1 - A^2 + A^4 - A^6 + A^8")
+    );
     assert_eq!(solution.displacement.harmonics().len(), 1);
 }
 
@@ -248,8 +292,8 @@ fn pendulum_by_the_first_harmonic() {
     assert_eq!(*law(&solution), polynomial("1 - a^2/16 + a^4/1024"));
 }
 
-/// The first harmonic of the motion by `A`, put into law and motion by `a`, gives law and motion by `A`: exactly, up to
-/// the order kept, even forces included.
+/// The first harmonic of the motion by `A`, put into law and motion by `a`, gives law and motion by
+/// `A`: exactly, up to the order kept, even forces included.
 #[test]
 fn one_convention_converts_into_the_other() {
     for (equation, small, order) in [
@@ -273,11 +317,16 @@ fn one_convention_converts_into_the_other() {
             let mut sum = Polynomial::zero();
             let (_, degree) = series.exponent_range("a".into()).unwrap_or((0, 0));
             for exponent in 0..=degree {
-                for (monomial, coefficient) in series.terms().filter(|(m, _)| m.exponent("a".into()) == exponent) {
+                for (monomial, coefficient) in series
+                    .terms()
+                    .filter(|(m, _)| m.exponent("a".into()) == exponent)
+                {
                     let rest = Polynomial::term(monomial.without("a".into()), coefficient.clone());
                     sum = sum + rest.product(&power);
                 }
-                power = power.product(&first_harmonic).truncated(small.into(), highest);
+                power = power
+                    .product(&first_harmonic)
+                    .truncated(small.into(), highest);
             }
             sum.truncated(small.into(), highest)
         };
@@ -298,7 +347,11 @@ fn one_convention_converts_into_the_other() {
                 "{equation}, cos {k} theta"
             );
         }
-        assert_eq!(initial.displacement.at_zero().mean().0, polynomial("A"), "{equation}");
+        assert_eq!(
+            initial.displacement.at_zero().mean().0,
+            polynomial("A"),
+            "{equation}"
+        );
         assert!(
             initial.displacement.is_even() && other.displacement.is_even(),
             "{equation}"
@@ -336,7 +389,8 @@ fn rayleigh_swings_with_the_amplitudes_known() {
     }
 }
 
-/// The derivative of Rayleigh's motion is van der Pol's, a quarter period later, harmonic by harmonic.
+/// The derivative of Rayleigh's motion is van der Pol's, a quarter period later, harmonic by
+/// harmonic.
 #[test]
 fn rayleighs_velocity_is_van_der_pols_motion() {
     let order = 7;
@@ -344,10 +398,12 @@ fn rayleighs_velocity_is_van_der_pols_motion() {
     let rayleigh = derive("x'' + x = mu*(1 - x'^2/3)*x'", order, None);
     let frequency = FourierSeries::constant(POLYNOMIALS, law(&rayleigh).clone());
     let velocity = rayleigh.displacement.derivative().product(&frequency);
-    let truncated = |series: FourierSeries<Polynomials>| series.mean().0.truncated("mu".into(), order as i32);
+    let truncated =
+        |series: FourierSeries<Polynomials>| series.mean().0.truncated("mu".into(), order as i32);
     for k in 0..=van_der_pol.highest_harmonic() {
         // cos k(theta + pi/2) and sin k(theta + pi/2) in terms of those of k theta.
-        let (cosine_sign, sine_sign, swapped) = [(1, 1, false), (1, -1, true), (-1, -1, false), (-1, 1, true)][k % 4];
+        let (cosine_sign, sine_sign, swapped) =
+            [(1, 1, false), (1, -1, true), (-1, -1, false), (-1, 1, true)][k % 4];
         let (of_cosine, of_sine) = match swapped {
             false => (van_der_pol.cosine(k), van_der_pol.sine(k)),
             true => (van_der_pol.sine(k), van_der_pol.cosine(k)),
@@ -393,7 +449,8 @@ fn composed(weight: impl Fn(usize) -> Rational, inner: &[Rational]) -> Vec<Ratio
     sum
 }
 
-/// The frequency law of `equation` times the series of T/(2 pi) in `unit` is one, to as many terms as `period` has.
+/// The frequency law of `equation` times the series of T/(2 pi) in `unit` is one, to as many terms
+/// as `period` has.
 fn assert_inverse_of_period(equation: &str, order: u32, unit: &str, period: &[Rational]) {
     let solution = derive(equation, order, INITIAL);
     let unit = polynomial(unit);
@@ -401,12 +458,18 @@ fn assert_inverse_of_period(equation: &str, order: u32, unit: &str, period: &[Ra
     let coefficient = |n: usize| law(&solution).coefficient(&monomial.power(n as i32));
     let frequency: Vec<Rational> = (0..period.len()).map(coefficient).collect();
     // Nothing else occurs in the law.
-    let terms = frequency.iter().filter(|coefficient| !coefficient.is_zero()).count();
+    let terms = frequency
+        .iter()
+        .filter(|coefficient| !coefficient.is_zero())
+        .count();
     assert_eq!(law(&solution).terms().len(), terms, "{equation}");
     let found = product(&frequency, period);
     for (n, coefficient) in found.iter().enumerate() {
         let expected = if n == 0 { ratio(1, 1) } else { ratio(0, 1) };
-        assert_eq!(*coefficient, expected, "{equation}: term {n} of frequency times period");
+        assert_eq!(
+            *coefficient, expected,
+            "{equation}: term {n} of frequency times period"
+        );
     }
 }
 
@@ -430,7 +493,13 @@ fn periods_by_elliptic_integrals_to_any_order() {
     // Duffing: T/(2 pi) = (2/pi) K(m) / sqrt(1 + s), m = (s/2)/(1 + s), s = eps A^2.
     let sign = |k: usize| 1 - 2 * (k % 2) as i64;
     let modulus: Vec<Rational> = (0..TERMS)
-        .map(|k| if k == 0 { Rational::zero() } else { ratio(-sign(k), 2) })
+        .map(|k| {
+            if k == 0 {
+                Rational::zero()
+            } else {
+                ratio(-sign(k), 2)
+            }
+        })
         .collect();
     // Binomial series of (1 + s)^(-1/2): its coefficients are +-c_k.
     let binomial = |k: usize| {
@@ -451,7 +520,12 @@ fn periods_by_elliptic_integrals_to_any_order() {
     let bead = |n: usize| elliptic_coefficient(n) * ratio(sign(n), 1 - 2 * n as i64);
     let period: Vec<Rational> = (0..TERMS).map(bead).collect();
     assert_eq!(period[..3], [ratio(1, 1), ratio(1, 4), ratio(-3, 64)]);
-    assert_inverse_of_period("(1 + x^2)*x'' + x*x'^2 + x = 0", 2 * highest, "A^2", &period);
+    assert_inverse_of_period(
+        "(1 + x^2)*x'' + x*x'^2 + x = 0",
+        2 * highest,
+        "A^2",
+        &period,
+    );
 }
 
 fn judged(equation: &str, solution: &Solution, at: &[(&str, &str)]) -> Verification {
@@ -459,7 +533,10 @@ fn judged(equation: &str, solution: &Solution, at: &[(&str, &str)]) -> Verificat
     let mut values = Values::default();
     for (name, value) in at {
         values
-            .insert((*name).into(), parse_expression(value).expect("an expression"))
+            .insert(
+                (*name).into(),
+                parse_expression(value).expect("an expression"),
+            )
             .expect("a number");
     }
     verify::judge(&oscillator, solution, &values, verify::DEFAULT_TOLERANCE).expect("a verdict")
@@ -469,17 +546,26 @@ fn elliptic_k(m: f64) -> f64 {
     ellip::ellipk(m).expect("an elliptic integral")
 }
 
-/// Equation, value of eps, exact frequency at an amplitude, and pairs of an order and the exponent of its error.
-type Row = (&'static str, &'static str, fn(f64) -> f64, &'static [(u32, f64)]);
+/// Equation, value of eps, exact frequency at an amplitude, and pairs of an order and the exponent
+/// of its error.
+type Row = (
+    &'static str,
+    &'static str,
+    fn(f64) -> f64,
+    &'static [(u32, f64)],
+);
 
-/// The frequency of the true motion comes out of the judge as the elliptic integral has it, and the error of the series
-/// vanishes with the exponent of its first missing term.
+/// The frequency of the true motion comes out of the judge as the elliptic integral has it, and the
+/// error of the series vanishes with the exponent of its first missing term.
 #[test]
 fn the_judge_measures_the_first_missing_term() {
-    let duffing: fn(f64) -> f64 = |a| PI * (1.0 + a * a).sqrt() / (2.0 * elliptic_k(a * a / (2.0 * (1.0 + a * a))));
-    let softening: fn(f64) -> f64 = |a| PI * (1.0 - a * a).sqrt() / (2.0 * elliptic_k(-a * a / (2.0 * (1.0 - a * a))));
+    let duffing: fn(f64) -> f64 =
+        |a| PI * (1.0 + a * a).sqrt() / (2.0 * elliptic_k(a * a / (2.0 * (1.0 + a * a))));
+    let softening: fn(f64) -> f64 =
+        |a| PI * (1.0 - a * a).sqrt() / (2.0 * elliptic_k(-a * a / (2.0 * (1.0 - a * a))));
     let pendulum: fn(f64) -> f64 = |a| PI / (2.0 * elliptic_k((0.5 * a).sin().powi(2)));
-    let bead: fn(f64) -> f64 = |a| PI / (2.0 * ellip::ellipe(-a * a).expect("an elliptic integral"));
+    let bead: fn(f64) -> f64 =
+        |a| PI / (2.0 * ellip::ellipe(-a * a).expect("an elliptic integral"));
     let rows: [Row; 5] = [
         // An order of eps and the exponent in eps; odd orders in A add nothing.
         (
@@ -488,10 +574,30 @@ fn the_judge_measures_the_first_missing_term() {
             duffing,
             &[(1, 2.0), (2, 3.0), (3, 4.0), (4, 5.0)],
         ),
-        ("x'' + x + x^3 = 0", "", duffing, &[(2, 4.0), (3, 4.0), (4, 6.0)]),
-        ("x'' + x + eps*x^3 = 0", "-1", softening, &[(1, 2.0), (3, 4.0)]),
-        ("x'' + sin(x) = 0", "", pendulum, &[(2, 4.0), (4, 6.0), (5, 6.0)]),
-        ("(1 + x^2)*x'' + x*x'^2 + x = 0", "", bead, &[(2, 4.0), (4, 6.0)]),
+        (
+            "x'' + x + x^3 = 0",
+            "",
+            duffing,
+            &[(2, 4.0), (3, 4.0), (4, 6.0)],
+        ),
+        (
+            "x'' + x + eps*x^3 = 0",
+            "-1",
+            softening,
+            &[(1, 2.0), (3, 4.0)],
+        ),
+        (
+            "x'' + sin(x) = 0",
+            "",
+            pendulum,
+            &[(2, 4.0), (4, 6.0), (5, 6.0)],
+        ),
+        (
+            "(1 + x^2)*x'' + x*x'^2 + x = 0",
+            "",
+            bead,
+            &[(2, 4.0), (4, 6.0)],
+        ),
     ];
     for (equation, eps, exact, orders) in rows {
         for &(order, exponent) in orders {
@@ -515,8 +621,13 @@ fn the_judge_measures_the_first_missing_term() {
                 );
             }
             // Halving A is halving sqrt(eps): the same error falls with twice the exponent there.
-            let per_halving = if eps.is_empty() { exponent } else { 2.0 * exponent };
-            let error = |verdict: &Verification| verdict.relative_error.expect("a real frequency").abs();
+            let per_halving = if eps.is_empty() {
+                exponent
+            } else {
+                2.0 * exponent
+            };
+            let error =
+                |verdict: &Verification| verdict.relative_error.expect("a real frequency").abs();
             let measured = (error(&whole) / error(&half)).log2();
             assert!(
                 (measured - per_halving).abs() < 0.35,
@@ -531,7 +642,8 @@ fn the_judge_measures_the_first_missing_term() {
     }
 }
 
-/// omega^2 = 1 - A^2/8 against the pendulum at finite amplitude, and a series beyond its radius of convergence.
+/// omega^2 = 1 - A^2/8 against the pendulum at finite amplitude, and a series beyond its radius of
+/// convergence.
 #[test]
 fn verdicts_at_finite_amplitude() {
     // Amplitude, true frequency, error in per cent as printed, half a unit of its last digit.
@@ -548,7 +660,10 @@ fn verdicts_at_finite_amplitude() {
             "A = {amplitude}"
         );
         let found = 100.0 * verdict.relative_error.expect("a real frequency");
-        assert!((found - percent).abs() <= digit, "A = {amplitude}: {found} %");
+        assert!(
+            (found - percent).abs() <= digit,
+            "A = {amplitude}: {found} %"
+        );
         assert_eq!(
             verdict.verdict == verify::Verdict::Pass,
             percent > -1.0,
@@ -566,14 +681,19 @@ fn verdicts_at_finite_amplitude() {
         let found = 100.0 * (series / verdict.true_frequency - 1.0);
         assert!((found - percent).abs() <= 0.05, "order {order}: {found} %");
         // The verdict is on the root of omega^2.
-        let squared = solution.evaluate(law_squared(&solution), &value).expect("a number");
+        let squared = solution
+            .evaluate(law_squared(&solution), &value)
+            .expect("a number");
         let frequency = verdict.frequency.expect("a real frequency");
         assert!((frequency / squared.sqrt() - 1.0).abs() < 1e-15);
     }
     // Beyond sqrt 8 the formula has no frequency left, and that is a failure.
     let cubic = derive("x'' + sin(x) = 0", 2, INITIAL);
     let verdict = judged("x'' + sin(x) = 0", &cubic, &[("A", "2.9")]);
-    assert_eq!((verdict.frequency, verdict.verdict), (None, verify::Verdict::Fail));
+    assert_eq!(
+        (verdict.frequency, verdict.verdict),
+        (None, verify::Verdict::Fail)
+    );
 }
 
 /// Limit cycles against Runge-Kutta: the error vanishes with the next even power of mu.
@@ -673,9 +793,14 @@ fn what_does_not_apply_is_refused_by_name() {
         let refusal = refused(equation, &default);
         let expected = OscillatorError::AmbiguousSmallParameter(names.map(Symbol::new).to_vec());
         assert_eq!(refusal, Refusal::Oscillator(expected), "{equation}");
-        assert!(names.iter().all(|name| refusal.to_string().contains(name)), "{refusal}");
         assert!(
-            refusal.help().is_some_and(|help| help.to_string().contains(names[0])),
+            names.iter().all(|name| refusal.to_string().contains(name)),
+            "{refusal}"
+        );
+        assert!(
+            refusal
+                .help()
+                .is_some_and(|help| help.to_string().contains(names[0])),
             "{equation}"
         );
         // Naming one resolves it.
@@ -702,7 +827,10 @@ fn what_does_not_apply_is_refused_by_name() {
         for equation in ["x'' + x + eps*x^3 = 0", "x'' + sin(x) = 0"] {
             let refusal = refused(equation, &options(Some(asked), None));
             assert_eq!(refusal, Refusal::Order { asked, limit: 400 }, "{equation}");
-            assert!(refusal.to_string().contains(&asked.to_string()), "{refusal}");
+            assert!(
+                refusal.to_string().contains(&asked.to_string()),
+                "{refusal}"
+            );
         }
     }
     let refusal = refused("x'' + x + eps*x^3 = 0", &options(None, Some("delta")));
@@ -710,17 +838,23 @@ fn what_does_not_apply_is_refused_by_name() {
     let refusal = refused("x'' + x + x^3 + eps*x^5 = 0", &default);
     assert!(refusal.to_string().contains("`x^3`"), "{refusal}");
     let refusal = refused("x'' + x = (1 - x^2)*x'", &options(None, Some("A")));
-    assert!(matches!(refusal, Refusal::AmplitudeNotFree { .. }), "{refusal:?}");
+    assert!(
+        matches!(refusal, Refusal::AmplitudeNotFree { .. }),
+        "{refusal:?}"
+    );
     let refusal = refused("x'' + x^3 = 0", &default);
     assert!(
-        matches!(refusal, Refusal::Oscillator(OscillatorError::NoRestoringForce(_))),
+        matches!(
+            refusal,
+            Refusal::Oscillator(OscillatorError::NoRestoringForce(_))
+        ),
         "{refusal:?}"
     );
 }
 
-/// With `omega0^2 = g/L` the pendulum's terms are powers of it, and those of a bead on a parabola have no `g`; where every parameter of the
-/// linear force stands elsewhere as well, all terms stay as they were typed. Either way the numbers are those of the same equation
-/// without names.
+/// With `omega0^2 = g/L` the pendulum's terms are powers of it, and those of a bead on a parabola
+/// have no `g`; where every parameter of the linear force stands elsewhere as well, all terms stay
+/// as they were typed. Either way the numbers are those of the same equation without names.
 #[test]
 fn terms_that_are_powers_of_the_linear_frequency_are_written_so() {
     for (equation, values, expected) in [
@@ -750,7 +884,8 @@ fn terms_that_are_powers_of_the_linear_frequency_are_written_so() {
             small: Some("A".to_owned()),
             ..Options::default()
         };
-        let solution = solve(&Oscillator::parse(equation).expect(equation), &options).expect(equation);
+        let solution =
+            solve(&Oscillator::parse(equation).expect(equation), &options).expect(equation);
         assert_eq!(*law_squared(&solution), polynomial(expected), "{equation}");
         let mut numbers = equation.to_owned();
         for (name, value) in &values {
@@ -760,9 +895,16 @@ fn terms_that_are_powers_of_the_linear_frequency_are_written_so() {
         let value_of = |name: Symbol| match name.name() {
             "A" => Some(0.3),
             "omega0" => Some(0.5),
-            name => values.iter().find(|(own, _)| *own == name).map(|(_, value)| *value),
+            name => values
+                .iter()
+                .find(|(own, _)| *own == name)
+                .map(|(_, value)| *value),
         };
-        let [found, plain] = [&solution, &plain].map(|own| law_squared(own).evaluate(value_of).expect("a number"));
-        assert!((found / plain - 1.0).abs() < 1e-14, "{equation}: {found} {plain}");
+        let [found, plain] =
+            [&solution, &plain].map(|own| law_squared(own).evaluate(value_of).expect("a number"));
+        assert!(
+            (found / plain - 1.0).abs() < 1e-14,
+            "{equation}: {found} {plain}"
+        );
     }
 }

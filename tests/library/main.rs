@@ -1,4 +1,5 @@
-//! The library held against independent truth: one file a subject, all in one program, so that they share the processor's cores.
+//! The library held against independent truth: one file a subject, all in one program, so that they
+//! share the processor's cores.
 
 mod averaging;
 mod certificate;

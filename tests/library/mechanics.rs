@@ -1,11 +1,13 @@
-//! Lagrange's equations held against equations derived by hand, against energy, and against modes known in closed form.
+//! Lagrange's equations held against equations derived by hand, against energy, and against modes
+//! known in closed form.
 
 use std::collections::BTreeMap;
 
 use lindstedt::audit::paper;
 use lindstedt::expr::{CompiledFunction, Expr, parse_expression};
 use lindstedt::mechanics::{
-    Dimension, Drive, Groups, MechanicsError, Mechanism, MechanismQuestion, Modes, Place, equilibria, study,
+    Dimension, Drive, Groups, MechanicsError, Mechanism, MechanismQuestion, Modes, Place,
+    equilibria, study,
 };
 use lindstedt::problem::Problem;
 use lindstedt::system::Integrator;
@@ -17,7 +19,10 @@ fn expression(text: &str) -> Expr {
 }
 
 fn example(name: &str) -> Problem {
-    let path = format!("{}/examples/lagrange/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let path = format!(
+        "{}/examples/lagrange/{name}.toml",
+        env!("CARGO_MANIFEST_DIR")
+    );
     std::fs::read_to_string(path)
         .expect("an example")
         .parse()
@@ -37,14 +42,16 @@ impl Random {
     }
 }
 
-/// Both sides at random points, all symbols between 0.2 and 1.2: a difference is a difference of the formulas.
+/// Both sides at random points, all symbols between 0.2 and 1.2: a difference is a difference of
+/// the formulas.
 fn assert_same(derived: &Expr, by_hand: &Expr) {
     let names: Vec<Symbol> = (derived - by_hand)
         .symbols()
         .into_iter()
         .chain(derived.symbols())
         .collect();
-    let [one, two] = [derived, by_hand].map(|side| CompiledFunction::new(side, &names).expect("a function"));
+    let [one, two] =
+        [derived, by_hand].map(|side| CompiledFunction::new(side, &names).expect("a function"));
     let mut random = Random(7);
     for _ in 0..200 {
         let point: Vec<f64> = {
@@ -62,7 +69,8 @@ fn assert_same(derived: &Expr, by_hand: &Expr) {
     }
 }
 
-/// The textbooks' equations: Landau and Lifshitz, *Mechanics*, section 5, for the double pendulum's energies; the equations by hand.
+/// The textbooks' equations: Landau and Lifshitz, *Mechanics*, section 5, for the double pendulum's
+/// energies; the equations by hand.
 #[test]
 fn equations_are_those_derived_by_hand() {
     let cases: [(&str, &[&str]); 5] = [
@@ -87,7 +95,10 @@ fn equations_are_those_derived_by_hand() {
                 "m*L^2*x'' + m*L*s''*cos(x) + m*g*L*sin(x) + b*x'",
             ],
         ),
-        ("rotating-pendulum", &["x'' + g/L*sin(x) - Omega^2*sin(x)*cos(x)"]),
+        (
+            "rotating-pendulum",
+            &["x'' + g/L*sin(x) - Omega^2*sin(x)*cos(x)"],
+        ),
         (
             "bead-on-a-hoop",
             &["u'' + c/m*u' + g/R*sin(u) - Omega^2*cos(u)*(e/R + sin(u))"],
@@ -131,7 +142,8 @@ fn energy_is_kept_by_what_is_derived() {
         assert!(motion.is_complete());
         let balance = motion.balance.clone().expect("an energy");
         assert!(balance.residual < 1e-12, "{name}: {balance:?}");
-        let conservative = ["double-pendulum", "spring-pendulum", "rotating-pendulum"].contains(&name);
+        let conservative =
+            ["double-pendulum", "spring-pendulum", "rotating-pendulum"].contains(&name);
         assert_eq!(balance.work == 0.0, conservative, "{name}: {balance:?}");
         let judge = course.follow_by(Integrator::RungeKutta).expect("a motion");
         assert!(
@@ -142,39 +154,71 @@ fn energy_is_kept_by_what_is_derived() {
     }
 }
 
-/// Two equal masses on three equal springs: omega^2 = k/m and 3 k/m. Two equal links: omega^2 = (2 -+ sqrt 2) g/l.
+/// Two equal masses on three equal springs: omega^2 = k/m and 3 k/m. Two equal links: omega^2 =
+/// (2 -+ sqrt 2) g/l.
 #[test]
 fn modes_are_those_of_the_textbooks() {
     let modes = |name: &str, values: &[(&str, f64)]| {
-        let equations = example(name).mechanism().unwrap().mechanism.equations().unwrap();
+        let equations = example(name)
+            .mechanism()
+            .unwrap()
+            .mechanism
+            .equations()
+            .unwrap();
         let rest = &equilibria(&equations).unwrap()[0];
-        let values = values.iter().map(|(name, value)| (Symbol::new(name), *value)).collect();
-        Modes::at(&equations, rest).unwrap().numbers(&values).unwrap()
+        let values = values
+            .iter()
+            .map(|(name, value)| (Symbol::new(name), *value))
+            .collect();
+        Modes::at(&equations, rest)
+            .unwrap()
+            .numbers(&values)
+            .unwrap()
     };
     let links = modes(
         "double-pendulum",
-        &[("m1", 2.0), ("m2", 2.0), ("l1", 0.5), ("l2", 0.5), ("g", 9.81)],
+        &[
+            ("m1", 2.0),
+            ("m2", 2.0),
+            ("l1", 0.5),
+            ("l2", 0.5),
+            ("g", 9.81),
+        ],
     );
     for (mode, sign) in links.iter().zip([-1.0, 1.0]) {
         let square = (2.0 + sign * 2.0_f64.sqrt()) * 9.81 / 0.5;
         assert!((mode.frequency.powi(2) / square - 1.0).abs() < 1e-13 && mode.growth == 0.0);
         let shape = mode.shape.as_ref().expect("a shape");
-        assert!((shape[1] / shape[0] + sign * 2.0_f64.sqrt()).abs() < 1e-12, "{shape:?}");
+        assert!(
+            (shape[1] / shape[0] + sign * 2.0_f64.sqrt()).abs() < 1e-12,
+            "{shape:?}"
+        );
     }
     let masses = modes("driven-masses", &[("m", 0.5), ("k", 8.0), ("c", 0.0)]);
-    assert!((masses[0].frequency - 4.0).abs() < 1e-13 && (masses[1].frequency - 48.0_f64.sqrt()).abs() < 1e-13);
+    assert!(
+        (masses[0].frequency - 4.0).abs() < 1e-13
+            && (masses[1].frequency - 48.0_f64.sqrt()).abs() < 1e-13
+    );
     // Both damped alike: lambda = -c/2m +- i sqrt(omega^2 - (c/2m)^2).
     let masses = modes("driven-masses", &[("m", 0.5), ("k", 8.0), ("c", 1.0)]);
     for (mode, square) in masses.iter().zip([16.0, 48.0]) {
         assert!(
-            (mode.growth + 1.0).abs() < 1e-12 && (mode.frequency.powi(2) - square + 1.0).abs() < 1e-11,
+            (mode.growth + 1.0).abs() < 1e-12
+                && (mode.frequency.powi(2) - square + 1.0).abs() < 1e-11,
             "{mode:?}"
         );
     }
     // A cart that rolls freely, a pendulum on it: omega^2 = (1 + m/M) g/L without friction.
     let cart = modes(
         "cart-pendulum",
-        &[("m", 1.0), ("M", 2.0), ("L", 0.3), ("g", 9.81), ("c", 0.0), ("b", 0.0)],
+        &[
+            ("m", 1.0),
+            ("M", 2.0),
+            ("L", 0.3),
+            ("g", 9.81),
+            ("c", 0.0),
+            ("b", 0.0),
+        ],
     );
     assert_eq!((cart[0].frequency, cart[0].growth), (0.0, 0.0));
     assert!((cart[1].frequency.powi(2) / (1.5 * 9.81 / 0.3) - 1.0).abs() < 1e-13);
@@ -218,7 +262,8 @@ fn places_of_rest_are_exact() {
     assert_eq!(places("driven-masses").len(), 1);
 }
 
-/// The dimensionless equation in its groups is the equation itself: numbers put into either give the same accelerations.
+/// The dimensionless equation in its groups is the equation itself: numbers put into either give
+/// the same accelerations.
 #[test]
 fn groups_leave_the_motion_as_it_is() {
     for name in [
@@ -275,7 +320,8 @@ fn groups_leave_the_motion_as_it_is() {
                 state.insert(coordinate.derivative(), value * length / time);
             }
             let ratio = |index: usize| {
-                groups.left[index].evaluate(&scaled).unwrap() / equations.left[index].evaluate(&state).unwrap()
+                groups.left[index].evaluate(&scaled).unwrap()
+                    / equations.left[index].evaluate(&state).unwrap()
             };
             (0..equations.left.len()).map(ratio).collect::<Vec<f64>>()
         };
@@ -288,8 +334,9 @@ fn groups_leave_the_motion_as_it_is() {
     }
 }
 
-/// Parameters that enter in a sum alone count as one, and cancel as one: a ball that rolls in a bowl has no number left, as its equation
-/// divided by its inertia by hand shows. Where one of them stands elsewhere, too, both count.
+/// Parameters that enter in a sum alone count as one, and cancel as one: a ball that rolls in a
+/// bowl has no number left, as its equation divided by its inertia by hand shows. Where one of them
+/// stands elsewhere, too, both count.
 #[test]
 fn parameters_that_enter_in_one_sum_count_as_one() {
     let units = |list: &str| -> BTreeMap<Symbol, Dimension> {
@@ -345,7 +392,11 @@ fn parameters_that_enter_in_one_sum_count_as_one() {
             .expect("omega^2");
         assert_eq!(found.to_string(), square);
         let groups = Groups::of(&mechanism, &equations, &units(list)).unwrap();
-        let found: Vec<String> = groups.combinations.iter().map(|sum| sum.meaning.to_string()).collect();
+        let found: Vec<String> = groups
+            .combinations
+            .iter()
+            .map(|sum| sum.meaning.to_string())
+            .collect();
         assert_eq!(found, sums);
         assert!(
             groups.groups.is_empty() && groups.parameters == groups.rank,
@@ -365,24 +416,38 @@ fn parameters_that_enter_in_one_sum_count_as_one() {
     }
 }
 
-/// What nothing linear pulls back does not move freely, and what shakes the pivot of a pendulum leaves it its places of rest.
+/// What nothing linear pulls back does not move freely, and what shakes the pivot of a pendulum
+/// leaves it its places of rest.
 #[test]
 fn a_rest_without_a_linear_force_is_not_called_free() {
     let printed = |coordinate: &str, kinetic: &str, potential: &str, values: &[(&str, f64)]| {
         let question = MechanismQuestion {
             mechanism: Mechanism::parse(&[coordinate], kinetic, potential).unwrap(),
             units: None,
-            values: values.iter().map(|(name, value)| (Symbol::new(name), *value)).collect(),
+            values: values
+                .iter()
+                .map(|(name, value)| (Symbol::new(name), *value))
+                .collect(),
         };
         let study = study(question).unwrap();
         let text = lindstedt::export::text::document(&lindstedt::report::mechanism(&study), 120);
-        (study.rests.iter().map(|rest| rest.drive).collect::<Vec<_>>(), text)
+        (
+            study
+                .rests
+                .iter()
+                .map(|rest| rest.drive)
+                .collect::<Vec<_>>(),
+            text,
+        )
     };
     let quartic = ("x", "m*x'^2/2", "k3*x^4/4");
     for values in [&[][..], &[("m", 1.0), ("k3", 2.0)]] {
         let (drive, text) = printed(quartic.0, quartic.1, quartic.2, values);
         assert_eq!(drive, [Drive::Absent]);
-        assert!(!text.contains("freely") && text.contains("no linear force"), "{text}");
+        assert!(
+            !text.contains("freely") && text.contains("no linear force"),
+            "{text}"
+        );
     }
     let (_, text) = printed("x", "m*x'^2/2", "0", &[("m", 1.0)]);
     assert!(text.contains("moves freely\n"), "{text}");
@@ -394,7 +459,10 @@ fn a_rest_without_a_linear_force_is_not_called_free() {
         &[("m", 1.0), ("k", 1.0), ("W", 2.0)],
     );
     assert_eq!(drive, [Drive::Acts]);
-    assert!(text.contains("freely where nothing that is left out acts"), "{text}");
+    assert!(
+        text.contains("freely where nothing that is left out acts"),
+        "{text}"
+    );
     // Kapitza's pendulum rests upright and hanging; pushed sideways it does not.
     let upwards = "m*L^2*phi'^2/2 - m*L*a*W*sin(W*t)*sin(phi)*phi'";
     let (drive, text) = printed("phi", upwards, "-m*g*L*cos(phi)", &[]);
@@ -447,7 +515,12 @@ fn a_contact_is_followed_through_its_touches() {
     course.begin("x".into(), -1.5).unwrap();
     course.duration = 10.0;
     let motion = course.follow().unwrap();
-    assert!(motion.is_complete(), "{:?} at {}", motion.reason(), motion.end());
+    assert!(
+        motion.is_complete(),
+        "{:?} at {}",
+        motion.reason(),
+        motion.end()
+    );
     assert!(
         motion.balance.as_ref().expect("an energy").residual < 1e-9,
         "{:?}",
@@ -466,7 +539,12 @@ fn what_is_no_mechanism_is_refused() {
     for (coordinates, kinetic, potential, words) in [
         (&["x"][..], "m*y'^2/2", "0", "`y'`: no coordinate"),
         (&["x", "y"], "m*x'^2/2", "k*y^2/2", "does not contain `y'`"),
-        (&["x"], "m*x'^2/2", "k*x'*x", "a potential depends on coordinates alone"),
+        (
+            &["x"],
+            "m*x'^2/2",
+            "k*x'*x",
+            "a potential depends on coordinates alone",
+        ),
         (&["x"], "m*x''^2/2", "0", "`x''`"),
         (&["x", "x"], "m*x'^2/2", "0", "twice"),
         (&[], "0", "0", "1 to 8 coordinates"),
@@ -496,7 +574,13 @@ fn what_is_no_mechanism_is_refused() {
         .unwrap_err()
         .to_string();
     assert_eq!(message, "`g` has no unit");
-    let all = [("x", "1"), ("m", "kg"), ("L", "m"), ("g", "m/s^2"), ("k", "N/m")];
+    let all = [
+        ("x", "1"),
+        ("m", "kg"),
+        ("L", "m"),
+        ("g", "m/s^2"),
+        ("k", "N/m"),
+    ];
     assert!(
         pendulum
             .check_units(&units(&all))
@@ -513,19 +597,31 @@ fn a_derived_equation_is_handed_on() {
     let problem = example("pendulum");
     let equation = problem.equation.clone().expect("an equation");
     assert_eq!(
-        Oscillator::parse(&equation).expect("an oscillator").force.to_string(),
+        Oscillator::parse(&equation)
+            .expect("an oscillator")
+            .force
+            .to_string(),
         "g*sin(x)/L"
     );
     let course = Course::of_equation(&Oscillator::parse(&equation).unwrap());
-    assert_eq!(course.parameters(), vec![Symbol::new("L"), Symbol::new("g")]);
+    assert_eq!(
+        course.parameters(),
+        vec![Symbol::new("L"), Symbol::new("g")]
+    );
 }
 
-/// Dry friction that sticks and lets go, held against the simulator of equation (7), which has its own way of doing it.
+/// Dry friction that sticks and lets go, held against the simulator of equation (7), which has its
+/// own way of doing it.
 #[test]
 fn a_driven_motion_sticks_and_lets_go() {
     use lindstedt::impact::{Integrator as Route, Model, Settings, Start, simulate};
     let equation = "x'' + alpha*sgn(x') + sin(x) - beta*sin(eta*t)*cos(x) = 0";
-    for (alpha, beta, eta) in [(0.3, 0.5, 0.35), (0.2, 0.25, 0.8), (0.5, 0.9, 0.3), (0.1, 0.05, 1.1)] {
+    for (alpha, beta, eta) in [
+        (0.3, 0.5, 0.35),
+        (0.2, 0.25, 0.8),
+        (0.5, 0.9, 0.3),
+        (0.1, 0.05, 1.1),
+    ] {
         let model = Model {
             alpha,
             beta,
@@ -537,7 +633,16 @@ fn a_driven_motion_sticks_and_lets_go() {
             duration: 80.0,
             ..Settings::default()
         };
-        let truth = simulate(&model, Start { x: 0.6, velocity: 0.0 }, Route::Taylor, &settings).expect("a motion");
+        let truth = simulate(
+            &model,
+            Start {
+                x: 0.6,
+                velocity: 0.0,
+            },
+            Route::Taylor,
+            &settings,
+        )
+        .expect("a motion");
         let mut course = Course::of_equation(&Oscillator::parse(equation).expect("an oscillator"));
         course.values = [("alpha", alpha), ("beta", beta), ("eta", eta)]
             .map(|(name, value)| (Symbol::new(name), value))
@@ -545,12 +650,20 @@ fn a_driven_motion_sticks_and_lets_go() {
         course.begin("x".into(), 0.6).expect("a state");
         course.duration = 80.0;
         let motion = course.follow().expect("a motion");
-        assert!(motion.is_complete(), "{:?} at {}", motion.reason(), motion.end());
+        assert!(
+            motion.is_complete(),
+            "{:?} at {}",
+            motion.reason(),
+            motion.end()
+        );
         for index in 0..=800 {
             let t = 0.1 * f64::from(index);
             let (x, _) = truth.path.at(t).expect("a state");
             let own = motion.at(t).expect("a state")[0];
-            assert!((own - x).abs() < 1e-8, "{alpha} {beta} {eta} at {t}: {own} {x}");
+            assert!(
+                (own - x).abs() < 1e-8,
+                "{alpha} {beta} {eta} at {t}: {own} {x}"
+            );
         }
         assert!(
             motion.held().count() > 2 || beta < alpha,
@@ -583,17 +696,27 @@ fn mechanism(
 
 fn followed(course: Course) -> lindstedt::trajectory::Trajectory {
     let motion = course.follow().expect("a motion");
-    assert!(motion.is_complete(), "{:?} at {}", motion.reason(), motion.end());
+    assert!(
+        motion.is_complete(),
+        "{:?} at {}",
+        motion.reason(),
+        motion.end()
+    );
     let residual = motion.balance.as_ref().expect("a balance").residual;
     assert!(residual < 1e-9, "{residual}");
     motion
 }
 
-/// Parts of a system that friction holds while the rest goes on, in closed form: one of two blocks, two blocks on each other, a block on a belt.
+/// Parts of a system that friction holds while the rest goes on, in closed form: one of two blocks,
+/// two blocks on each other, a block on a belt.
 #[test]
 fn friction_holds_one_of_several_coordinates() {
     // The spring between them, 1/2 times y, is too weak for the friction of 2/5: y'' + 3/2 y = 0.
-    let blocks = ["(x'^2 + y'^2)/2", "(x^2 + y^2)/2 + (x - y)^2/4", "2/5*abs(x')"];
+    let blocks = [
+        "(x'^2 + y'^2)/2",
+        "(x^2 + y^2)/2 + (x - y)^2/4",
+        "2/5*abs(x')",
+    ];
     let motion = followed(mechanism(blocks, &[], &[("y", 0.79)], 40.0));
     assert_eq!(motion.held().collect::<Vec<_>>(), [[0.0, 40.0]]);
     for index in 0..=400 {
@@ -611,7 +734,10 @@ fn friction_holds_one_of_several_coordinates() {
     let phase = (0.7 / 1.5_f64.sqrt()).atan2(0.7);
     let let_go = (phase - (0.8 / size).acos()) / 1.5_f64.sqrt();
     let [from, until] = motion.held().next().expect("a hold");
-    assert!(from == 0.0 && (until - let_go).abs() < 1e-12, "{until} {let_go}");
+    assert!(
+        from == 0.0 && (until - let_go).abs() < 1e-12,
+        "{until} {let_go}"
+    );
     assert!(motion.at(until + 0.3).expect("a state")[0] > 1e-4);
     // Three quarters of the mass ride on the rest: 4 x'' + x = 0 while 3 |x''| <= 1/2.
     let riding = ["x'^2/2 + 3*y'^2/2", "x^2/2", "abs(x' - y')/2"];
@@ -624,26 +750,39 @@ fn friction_holds_one_of_several_coordinates() {
             "{t}"
         );
     }
-    // Twice that is too much at the turning points: x'' + x = -1/2 sgn(x' - y') until both are equally fast.
+    // Twice that is too much at the turning points: x'' + x = -1/2 sgn(x' - y') until both are
+    // equally fast.
     let motion = followed(mechanism(riding, &[], &[("x", 1.2)], 30.0));
-    assert!(motion.held().all(|[from, until]| from > 0.0 && until > from) && motion.held().count() > 0);
-    // On a belt it is carried until the spring is too strong, and then swings about where friction alone would hold it: it comes back to
-    // the speed of the belt once a period, and touches it.
-    let mut course = Course::of_equation(&Oscillator::parse("x'' + x + alpha*sgn(x' - 1/2) = 0").expect("an equation"));
+    assert!(
+        motion
+            .held()
+            .all(|[from, until]| from > 0.0 && until > from)
+            && motion.held().count() > 0
+    );
+    // On a belt it is carried until the spring is too strong, and then swings about where friction
+    // alone would hold it: it comes back to the speed of the belt once a period, and touches it.
+    let mut course = Course::of_equation(
+        &Oscillator::parse("x'' + x + alpha*sgn(x' - 1/2) = 0").expect("an equation"),
+    );
     course.begin("x'".into(), 0.5).expect("a state");
     course.values = [("alpha".into(), 0.3)].into();
     course.duration = 40.0;
     let motion = followed(course);
     for index in 0..=400 {
         let t = 0.1 * f64::from(index);
-        let carried = if t < 0.6 { 0.5 * t } else { 0.3 + 0.5 * (t - 0.6).sin() };
+        let carried = if t < 0.6 {
+            0.5 * t
+        } else {
+            0.3 + 0.5 * (t - 0.6).sin()
+        };
         let x = motion.at(t).expect("a state")[0];
         assert!((x - carried).abs() < 1e-7, "{t}: {x} {carried}");
     }
 }
 
-/// Two masses by time stepping, the friction implicit: in every step the impulses of friction on x', y' and x' - y' are projected on their
-/// bounds until the velocities fit (Moreau 1988), the rest is the midpoint rule. Answers x, y at the end of every hundredth of time.
+/// Two masses by time stepping, the friction implicit: in every step the impulses of friction on
+/// x', y' and x' - y' are projected on their bounds until the velocities fit (Moreau 1988), the
+/// rest is the midpoint rule. Answers x, y at the end of every hundredth of time.
 fn time_stepping(
     mass: [f64; 2],
     bounds: [f64; 3],
@@ -692,7 +831,8 @@ fn time_stepping(
     places
 }
 
-/// Stick and slip of two driven masses with friction under one, under both and between them, and on a belt, beside time stepping.
+/// Stick and slip of two driven masses with friction under one, under both and between them, and on
+/// a belt, beside time stepping.
 #[test]
 fn stick_and_slip_of_several_coordinates_is_that_of_time_stepping() {
     let mut held = 0;
@@ -734,19 +874,26 @@ fn stick_and_slip_of_several_coordinates_is_that_of_time_stepping() {
             let t = 0.01 * index as f64;
             let state = motion.at(t.min(25.0)).expect("a state");
             let apart = (state[0] - x).abs().max((state[1] - y).abs());
-            assert!(apart < 5e-4, "{mass:?} {bounds:?} {belt} at {t}: {state:?} {x} {y}");
+            assert!(
+                apart < 5e-4,
+                "{mass:?} {bounds:?} {belt} at {t}: {state:?} {x} {y}"
+            );
         }
         held += motion.held().count();
         // The other integrator finds the same.
         course.duration = 6.0;
         let other = course.follow_by(Integrator::RungeKutta).expect("a motion");
-        assert!(motion.difference(&other) < 1e-7, "{mass:?} {bounds:?} {belt}");
+        assert!(
+            motion.difference(&other) < 1e-7,
+            "{mass:?} {bounds:?} {belt}"
+        );
     }
     assert!(held > 8, "{held}");
 }
 
-/// Two bodies on the floor and on each other, one of them pushed by t/10, in closed form: both slip together where the push exceeds what
-/// holds both, 1 + 1/10, and apart where (t - 11)/20, the rate of both, needs more than 1/2 between them.
+/// Two bodies on the floor and on each other, one of them pushed by t/10, in closed form: both slip
+/// together where the push exceeds what holds both, 1 + 1/10, and apart where (t - 11)/20, the rate
+/// of both, needs more than 1/2 between them.
 #[test]
 fn more_frictions_at_rest_than_velocities() {
     let dissipation = "abs(x') + abs(y')/10 + abs(x' - y')/2";
@@ -778,13 +925,15 @@ fn more_frictions_at_rest_than_velocities() {
     );
 }
 
-/// Three balls in a row that touch each other to rounding: 3/10 + 4/10 is 7/10 for people, and more than that by one digit for a sum of doubles.
-/// They stay where they are, in a few steps; with the first one pressed into the second the third is pushed away as if it touched exactly.
+/// Three balls in a row that touch each other to rounding: 3/10 + 4/10 is 7/10 for people, and more
+/// than that by one digit for a sum of doubles. They stay where they are, in a few steps; with the
+/// first one pressed into the second the third is pushed away as if it touched exactly.
 #[test]
 fn balls_that_touch_to_rounding_cost_no_steps() {
     let row = |start: [f64; 3], until: f64| {
         let contacts = "50*max(0, 3/10 - (y - x))^2 + 50*max(0, 3/10 - (z - y))^2";
-        let mechanism = Mechanism::parse(&["x", "y", "z"], "(x'^2 + y'^2 + z'^2)/2", contacts).expect("a mechanism");
+        let mechanism = Mechanism::parse(&["x", "y", "z"], "(x'^2 + y'^2 + z'^2)/2", contacts)
+            .expect("a mechanism");
         let equations = mechanism.equations().expect("equations");
         let mut course = Course::of_mechanism(&mechanism, &equations).expect("a course");
         for (name, value) in ["x", "y", "z"].into_iter().zip(start) {
@@ -793,7 +942,12 @@ fn balls_that_touch_to_rounding_cost_no_steps() {
         course.duration = until;
         course.step_limit = 500;
         let motion = course.follow().expect("a motion");
-        assert!(motion.is_complete(), "{:?} at {}", motion.reason(), motion.end());
+        assert!(
+            motion.is_complete(),
+            "{:?} at {}",
+            motion.reason(),
+            motion.end()
+        );
         motion.at(until).expect("a state")
     };
     let still = row([0.1, 0.4, 0.7], 2.0);
@@ -804,7 +958,8 @@ fn balls_that_touch_to_rounding_cost_no_steps() {
             .all(|(now, then)| (now - then).abs() < 1e-14),
         "{still:?}"
     );
-    // All three in contact: u'' = -100 (2 u - w), w'' = -100 (2 w - u) of both depths, modes 10 and 10 sqrt(3).
+    // All three in contact: u'' = -100 (2 u - w), w'' = -100 (2 w - u) of both depths, modes 10 and
+    // 10 sqrt(3).
     let pressed = row([0.1, 0.2, 0.5], 0.05);
     let [u, w] = [pressed[0] - pressed[1] + 0.3, pressed[1] - pressed[2] + 0.3];
     let [slow, fast] = [10.0_f64, 300.0_f64.sqrt()].map(|rate| 0.1 * (rate * 0.05).cos());
@@ -814,8 +969,8 @@ fn balls_that_touch_to_rounding_cost_no_steps() {
     );
 }
 
-/// Kept by hand: a root is opened by its own gate alone, an energy may have steps that vanish where they begin, masses of either sign
-/// have a mass matrix, and rigid motions are no growth.
+/// Kept by hand: a root is opened by its own gate alone, an energy may have steps that vanish where
+/// they begin, masses of either sign have a mass matrix, and rigid motions are no growth.
 #[test]
 fn corners_of_mechanisms() {
     let follow = |equation: &str, start: f64, until: f64| {
@@ -826,12 +981,19 @@ fn corners_of_mechanisms() {
     };
     let gated = follow("x'' + x^(1/3)*H(1 - x) = 0", 0.5, 10.0);
     let plain = follow("x'' + x^(1/3) = 0", 0.5, 10.0);
-    let [gated, plain] = [&gated, &plain].map(|motion| motion.at(motion.end().min(10.0)).expect("a state")[0]);
+    let [gated, plain] =
+        [&gated, &plain].map(|motion| motion.at(motion.end().min(10.0)).expect("a state")[0]);
     assert!((gated - plain).abs() < 1e-6, "{gated} {plain}");
     // Without a gate of its own a root has no value, and the motion ends there.
     assert!(!follow("x'' + 1 + sqrt(x)*H(1 - x) = 0", 0.5, 10.0).is_complete());
     let stop = Mechanism::parse(&["x"], "m*x'^2/2", "k*x^2/2 + c*(x - a)^2*H(x - a)/2").unwrap();
-    assert_eq!(stop.equations().unwrap().left[0].to_string().matches("H(").count(), 2);
+    assert_eq!(
+        stop.equations().unwrap().left[0]
+            .to_string()
+            .matches("H(")
+            .count(),
+        2
+    );
     let crossed = Mechanism::parse(&["x", "y"], "m*x'*y'", "k*x*y").unwrap();
     let accelerations = crossed.equations().unwrap().accelerations().unwrap();
     assert_same(&accelerations[0], &expression("-k*x/m"));
@@ -845,24 +1007,38 @@ fn corners_of_mechanisms() {
     chain.dissipation = expression("750*(x' - y')^2 + 100*(y' - z')^2");
     let equations = chain.equations().unwrap();
     let rest = &equilibria(&equations).unwrap()[0];
-    let modes = Modes::at(&equations, rest).unwrap().numbers(&BTreeMap::new()).unwrap();
+    let modes = Modes::at(&equations, rest)
+        .unwrap()
+        .numbers(&BTreeMap::new())
+        .unwrap();
     assert!(modes.iter().all(|mode| mode.growth <= 0.0), "{modes:?}");
     assert_eq!((modes[0].frequency, modes[0].growth), (0.0, 0.0));
     // Anywhere along a rod: the swing depends on where, and says so.
-    let rod = Mechanism::parse(&["s", "x"], "m*s'^2/2 + (I + m*s^2)*x'^2/2", "-M*g*L*cos(x)").unwrap();
+    let rod = Mechanism::parse(
+        &["s", "x"],
+        "m*s'^2/2 + (I + m*s^2)*x'^2/2",
+        "-M*g*L*cos(x)",
+    )
+    .unwrap();
     let equations = rod.equations().unwrap();
     let rest = &equilibria(&equations).unwrap()[0];
-    assert_eq!(Modes::at(&equations, rest).unwrap().taken_at_zero, [Symbol::new("s")]);
+    assert_eq!(
+        Modes::at(&equations, rest).unwrap().taken_at_zero,
+        [Symbol::new("s")]
+    );
     // Duffing's spring rests at zero.
     let duffing = Mechanism::parse(&["x"], "m*x'^2/2", "k*x^2/2 + b*x^4/4")
         .unwrap()
         .equations()
         .unwrap();
-    assert_eq!(equilibria(&duffing).unwrap()[0].places, [Place::At(Expr::zero())]);
+    assert_eq!(
+        equilibria(&duffing).unwrap()[0].places,
+        [Place::At(Expr::zero())]
+    );
 }
 
-/// A mechanism that changes with the time other than by sines and cosines has no modes; what a drive adds is left out of inertia, damping and
-/// stiffness alike.
+/// A mechanism that changes with the time other than by sines and cosines has no modes; what a
+/// drive adds is left out of inertia, damping and stiffness alike.
 #[test]
 fn a_mechanism_that_changes_with_the_time_has_no_modes() {
     let hanging = |kinetic: &str, potential: &str| {
@@ -893,19 +1069,30 @@ fn a_mechanism_that_changes_with_the_time_has_no_modes() {
     }
     // omega^2 of the mechanism with its drive at rest, whether that shakes the pivot or the length.
     for (kinetic, potential, square) in [
-        ("m*(L + a*cos(W*t))^2*x'^2/2", "-m*g*(L + a*cos(W*t))*cos(x)", "g/L"),
-        ("m*(L^2*x'^2 - 2*a*W*L*x'*sin(W*t)*sin(x))/2", "-m*g*L*cos(x)", "g/L"),
+        (
+            "m*(L + a*cos(W*t))^2*x'^2/2",
+            "-m*g*(L + a*cos(W*t))*cos(x)",
+            "g/L",
+        ),
+        (
+            "m*(L^2*x'^2 - 2*a*W*L*x'*sin(W*t)*sin(x))/2",
+            "-m*g*L*cos(x)",
+            "g/L",
+        ),
         ("m*x'^2/2", "k*(1 + a*sin(W*t)^2)*x^2/2", "k/m"),
         ("m*x'^2/2", "k*(x - a*sin(W*t))^2/2", "k/m"),
     ] {
         let modes = hanging(kinetic, potential);
         assert_eq!(modes.changing, None, "{kinetic}, {potential}");
-        assert_same(&modes.square().unwrap().expect("one coordinate"), &expression(square));
+        assert_same(
+            &modes.square().unwrap().expect("one coordinate"),
+            &expression(square),
+        );
     }
 }
 
-/// A mass on a linear spring has no length of its own: its size is a unit, and the equations do not depend on it; that of a cubic
-/// spring sets the time.
+/// A mass on a linear spring has no length of its own: its size is a unit, and the equations do not
+/// depend on it; that of a cubic spring sets the time.
 #[test]
 fn groups_need_no_length_among_the_parameters() {
     let groups = |kinetic: &str, potential: &str, dissipation: &str, own: &[(&str, &str)]| {
@@ -933,7 +1120,12 @@ fn groups_need_no_length_among_the_parameters() {
     assert_same(&found.time, &expression("sqrt(m/k)"));
     assert_eq!(found.sizes, [("x".into(), "x0".into())]);
     assert_eq!((found.parameters, found.rank), (3, 3));
-    let cubic = groups("m*x'^2/2", "b*x^4/4", "0", &[linear[0], linear[1], linear[4]]);
+    let cubic = groups(
+        "m*x'^2/2",
+        "b*x^4/4",
+        "0",
+        &[linear[0], linear[1], linear[4]],
+    );
     assert_eq!(
         (cubic.left[0].to_string().as_str(), cubic.groups.len()),
         ("x'' + x^3", 0)
@@ -957,13 +1149,15 @@ fn groups_need_no_length_among_the_parameters() {
     assert!(dry.sizes.is_empty());
 }
 
-/// Seven links whose energies are written from the places of their masses: the mass matrix is `M_ij = (sum of masses from the later
-/// link on) L_i L_j cos(q_i - q_j)`.
+/// Seven links whose energies are written from the places of their masses: the mass matrix is `M_ij
+/// = (sum of masses from the later link on) L_i L_j cos(q_i - q_j)`.
 #[test]
 fn energies_from_the_places_of_seven_links_join() {
     const LINKS: usize = 7;
     let sum = |last: usize, function: &str| {
-        let terms: Vec<String> = (1..=last).map(|i| format!("L{i}*q{i}'*{function}(q{i})")).collect();
+        let terms: Vec<String> = (1..=last)
+            .map(|i| format!("L{i}*q{i}'*{function}(q{i})"))
+            .collect();
         terms.join(" + ")
     };
     let kinetic: Vec<String> = (1..=LINKS)
@@ -975,7 +1169,9 @@ fn energies_from_the_places_of_seven_links_join() {
             .collect::<Vec<_>>()
             .join(" + ")
     };
-    let potential: Vec<String> = (1..=LINKS).map(|k| format!("-m{k}*g*({})", height(k))).collect();
+    let potential: Vec<String> = (1..=LINKS)
+        .map(|k| format!("-m{k}*g*({})", height(k)))
+        .collect();
     let names: Vec<String> = (1..=LINKS).map(|i| format!("q{i}")).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let mechanism = Mechanism::parse(&names, &kinetic.join(" + "), &potential.join(" + ")).unwrap();
@@ -999,7 +1195,8 @@ fn a_letter_that_cancels_has_no_value_for_the_equation() {
     let names: Vec<&str> = values.iter().map(|(name, _)| name.name()).collect();
     // What stands nowhere is still passed on, to be refused by its name.
     assert_eq!(names, ["L", "g", "k"]);
-    // Where it is followed, the energy has a mass: given, it is the unit of the energy, without it the motion is the same.
+    // Where it is followed, the energy has a mass: given, it is the unit of the energy, without it
+    // the motion is the same.
     let follow = |given: &str| {
         let file: Problem = text
             .replace("m = 3\n", given)
@@ -1007,7 +1204,10 @@ fn a_letter_that_cancels_has_no_value_for_the_equation() {
             .parse()
             .expect("a file");
         let mut course = file.course().expect("a course");
-        course.values = file.values_with(&course.parameters()).expect("values").numbers();
+        course.values = file
+            .values_with(&course.parameters())
+            .expect("values")
+            .numbers();
         course.begin("x".into(), 0.4).expect("a state");
         course.duration = 2.0;
         course.follow().expect("a motion")
@@ -1016,7 +1216,8 @@ fn a_letter_that_cancels_has_no_value_for_the_equation() {
     for motion in [&light, &none] {
         assert_eq!(motion.at(2.0), heavy.at(2.0));
     }
-    let [three, one] = [&heavy, &light].map(|motion| motion.balance.as_ref().expect("a balance").start);
+    let [three, one] =
+        [&heavy, &light].map(|motion| motion.balance.as_ref().expect("a balance").start);
     let energy = 9.81 * 2.0 * (1.0 - 0.4_f64.cos());
     assert!((three / (3.0 * energy) - 1.0).abs() < 1e-12 && (one / energy - 1.0).abs() < 1e-12);
     assert!(none.balance.is_none());

@@ -1,4 +1,5 @@
-//! Names of the user and names of the program: an equation means the same whatever its parameters are called.
+//! Names of the user and names of the program: an equation means the same whatever its parameters
+//! are called.
 
 use std::collections::BTreeMap;
 
@@ -10,8 +11,9 @@ use lindstedt::{Oscillator, Solution, Symbol};
 
 /// Every name that some answer introduces, and some that look like them.
 const NAMES: [&str; 33] = [
-    "hbar", "hbar_", "W1", "W2", "y0", "y1", "y2", "w0", "w1", "w_0", "c1", "c2", "c3", "c_1", "a0", "a1", "a3", "b1",
-    "z", "p", "q", "x0", "x1", "omega0", "chi", "u_1", "u1", "s", "k", "V", "T", "theta", "phi",
+    "hbar", "hbar_", "W1", "W2", "y0", "y1", "y2", "w0", "w1", "w_0", "c1", "c2", "c3", "c_1",
+    "a0", "a1", "a3", "b1", "z", "p", "q", "x0", "x1", "omega0", "chi", "u_1", "u1", "s", "k", "V",
+    "T", "theta", "phi",
 ];
 
 const EQUATIONS: [&str; 4] = [
@@ -34,14 +36,20 @@ fn answer(equation: &str, name: &str, method: Method) -> Option<Solution> {
 fn omega(equation: &str, name: &str, solution: &Solution) -> Option<f64> {
     let oscillator = Oscillator::parse(&equation.replace("NAME", name)).expect("an equation");
     let at = BTreeMap::from([(Symbol::new("A"), 0.5), (Symbol::new(name), 0.75)]);
-    Some(evaluate(&oscillator, solution, &at).ok()?.frequency_squared.sqrt())
+    Some(
+        evaluate(&oscillator, solution, &at)
+            .ok()?
+            .frequency_squared
+            .sqrt(),
+    )
 }
 
 #[test]
 fn no_name_of_a_parameter_changes_a_number() {
     for equation in EQUATIONS {
         for method in Method::ALL {
-            let plain = answer(equation, "kappa", method).map(|solution| omega(equation, "kappa", &solution));
+            let plain = answer(equation, "kappa", method)
+                .map(|solution| omega(equation, "kappa", &solution));
             for name in NAMES {
                 let solution = answer(equation, name, method);
                 let value = solution.map(|solution| omega(equation, name, &solution));
@@ -81,7 +89,10 @@ fn a_name_of_the_program_is_never_one_of_the_user() {
             for name in NAMES {
                 let solution = answer(equation, name, method).expect("as with kappa");
                 assert!(
-                    solution.definitions.iter().all(|entry| entry.symbol.name() != name),
+                    solution
+                        .definitions
+                        .iter()
+                        .all(|entry| entry.symbol.name() != name),
                     "{name}"
                 );
                 let report = report(&solution);
@@ -100,7 +111,10 @@ fn latex_tells_all_names_of_an_answer_apart() {
             "x'' + omega0^2*x + omega_0*x^3 + omega0_*x^5 = 0",
             ["omega0", "omega_0", "omega0_"],
         ),
-        ("x'' + epsilon*x + eps*x^3 + eps_*x^5 = 0", ["epsilon", "eps", "eps_"]),
+        (
+            "x'' + epsilon*x + eps*x^3 + eps_*x^5 = 0",
+            ["epsilon", "eps", "eps_"],
+        ),
     ] {
         let solution = solve(
             &Oscillator::parse(equation).unwrap(),
@@ -113,14 +127,21 @@ fn latex_tells_all_names_of_an_answer_apart() {
         let document = latex::solution(&solution, None);
         let spellings = pairs.map(|name| latex::symbol(Symbol::new(name)));
         assert!(
-            spellings.iter().all(|spelling| document.contains(spelling.as_str())),
+            spellings
+                .iter()
+                .all(|spelling| document.contains(spelling.as_str())),
             "{document}"
         );
-        assert!(spellings[0] != spellings[1] && spellings[1] != spellings[2] && spellings[0] != spellings[2]);
+        assert!(
+            spellings[0] != spellings[1]
+                && spellings[1] != spellings[2]
+                && spellings[0] != spellings[2]
+        );
     }
 }
 
-/// omega^2 = omega0^2 + 3/4 x3 A^2 + ... and the judge's true frequency bound the value from two sides.
+/// omega^2 = omega0^2 + 3/4 x3 A^2 + ... and the judge's true frequency bound the value from two
+/// sides.
 #[test]
 fn linear_coefficients_that_are_no_fractions() {
     for (linear, value) in [
@@ -130,14 +151,20 @@ fn linear_coefficients_that_are_no_fractions() {
         ("sqrt(NAME)", 0.75_f64.sqrt()),
         ("sqrt(2)*NAME", 0.75 * 2_f64.sqrt()),
         ("(sqrt(2) + NAME)", 0.75 + 2_f64.sqrt()),
-        ("pi*sqrt(3)/NAME", 3_f64.sqrt() * std::f64::consts::PI / 0.75),
+        (
+            "pi*sqrt(3)/NAME",
+            3_f64.sqrt() * std::f64::consts::PI / 0.75,
+        ),
     ] {
         let equation = format!("x'' + {linear}*x + x^3 = 0");
         for method in [Method::LindstedtPoincare, Method::Pade] {
             let solution = answer(&equation, "kappa", method).expect(linear);
             let found = omega(&equation, "kappa", &solution).expect("real");
             let rough = (value + 0.75 * 0.25).sqrt();
-            assert!((found / rough - 1.0).abs() < 2e-3, "{linear}: {found} {rough}");
+            assert!(
+                (found / rough - 1.0).abs() < 2e-3,
+                "{linear}: {found} {rough}"
+            );
             let line = solution.formula();
             for symbol in solution
                 .law
@@ -145,7 +172,8 @@ fn linear_coefficients_that_are_no_fractions() {
                 .into_iter()
                 .flat_map(|law| law.symbols())
             {
-                let known = symbol.name() == "A" || symbol.name() == "kappa" || symbol.name() == "pi";
+                let known =
+                    symbol.name() == "A" || symbol.name() == "kappa" || symbol.name() == "pi";
                 assert!(known || line.contains(&format!("{symbol} = ")), "{line}");
             }
         }
@@ -161,10 +189,13 @@ fn negative_constants_are_no_stiffness() {
         "x'' + cos(2)*k*x + eps*x^3 = 0",
         "x'' + (sin(1)^2 + cos(1)^2 - 1)*x + eps*x^3 = 0",
     ] {
-        let refusal = solve(&Oscillator::parse(equation).unwrap(), &Options::default()).unwrap_err();
+        let refusal =
+            solve(&Oscillator::parse(equation).unwrap(), &Options::default()).unwrap_err();
         let refused = ["linear restoring force", "unstable"];
         assert!(
-            refused.iter().any(|words| refusal.to_string().contains(words)),
+            refused
+                .iter()
+                .any(|words| refusal.to_string().contains(words)),
             "{equation}: {refusal}"
         );
     }
@@ -181,7 +212,10 @@ impl Report {
         let steps = text::steps(solution) + &text::solution(solution, None, 0.01);
         let formulas = latex::steps(solution) + &latex::solution(solution, None);
         // Comments and running text spell names as they are typed.
-        let formulas: Vec<&str> = formulas.lines().filter(|line| !line.starts_with('%')).collect();
+        let formulas: Vec<&str> = formulas
+            .lines()
+            .filter(|line| !line.starts_with('%'))
+            .collect();
         let mut formulas = formulas.join("\n");
         while let Some(start) = formulas.find("\\text{") {
             let mut depth = 0;
@@ -215,33 +249,44 @@ impl Report {
             })
             .collect();
         let spelt = latex::symbol(Symbol::new(name));
-        let alone = self.formulas.match_indices(spelt.as_str()).filter(|(start, _)| {
-            let before = self.formulas[..*start].chars().next_back();
-            let after = self.formulas[start + spelt.len()..].chars().next();
-            let in_name = |letter: char| letter.is_ascii_alphabetic() || letter == '\\';
-            let goes_on = |letter: char| letter.is_ascii_alphabetic() || letter == '_';
-            // A command ends where a letter follows no letter; `\mathrm{K}` is no `K`.
-            let inside =
-                self.formulas[..*start].ends_with("\\mathrm{") || self.formulas[..*start].ends_with("\\tilde{");
-            let longer = before.is_some_and(in_name) && !spelt.starts_with('\\') || after.is_some_and(goes_on);
-            !inside && !longer
-        });
+        let alone = self
+            .formulas
+            .match_indices(spelt.as_str())
+            .filter(|(start, _)| {
+                let before = self.formulas[..*start].chars().next_back();
+                let after = self.formulas[start + spelt.len()..].chars().next();
+                let in_name = |letter: char| letter.is_ascii_alphabetic() || letter == '\\';
+                let goes_on = |letter: char| letter.is_ascii_alphabetic() || letter == '_';
+                // A command ends where a letter follows no letter; `\mathrm{K}` is no `K`.
+                let inside = self.formulas[..*start].ends_with("\\mathrm{")
+                    || self.formulas[..*start].ends_with("\\tilde{");
+                let longer = before.is_some_and(in_name) && !spelt.starts_with('\\')
+                    || after.is_some_and(goes_on);
+                !inside && !longer
+            });
         uses.push(alone.count());
         uses
     }
 
     /// Every name in its formulas that a parameter could have.
     fn names(&self) -> Vec<String> {
-        /// Words that stand in formulas' lines, names that an equation may not use, and a differential.
+        /// Words that stand in formulas' lines, names that an equation may not use, and a
+        /// differential.
         const OTHERS: [&str; 29] = [
-            "A", "a", "be", "x", "t", "pi", "omega", "theta", "kappa", "in", "to", "at", "of", "is", "it", "by", "or",
-            "as", "no", "up", "an", "on", "H", "df", "The", "the", "and", "du", "dx",
+            "A", "a", "be", "x", "t", "pi", "omega", "theta", "kappa", "in", "to", "at", "of",
+            "is", "it", "by", "or", "as", "no", "up", "an", "on", "H", "df", "The", "the", "and",
+            "du", "dx",
         ];
-        let mut names: Vec<String> = words(&self.words[0]).into_keys().map(str::to_owned).collect();
+        let mut names: Vec<String> = words(&self.words[0])
+            .into_keys()
+            .map(str::to_owned)
+            .collect();
         let all = names.clone();
         names.retain(|name| {
             let letter = name.starts_with(|letter: char| letter.is_ascii_alphabetic());
-            let short = name.len() <= 2 || name.contains('_') || name.contains(|digit: char| digit.is_ascii_digit());
+            let short = name.len() <= 2
+                || name.contains('_')
+                || name.contains(|digit: char| digit.is_ascii_digit());
             // Of a family the first few stand for all.
             let few = !name.ends_with(['3', '4', '5', '6', '7', '8', '9']);
             let short = short || ["lo", "hi", "hbar", "delta"].contains(&name.as_str());
@@ -257,8 +302,9 @@ impl Report {
     }
 }
 
-/// Whatever name a method uses for something of its own, a parameter may have it as well: then the parameter stands wherever
-/// it stands under another name, and nothing else is called so, in text, JSON and LaTeX.
+/// Whatever name a method uses for something of its own, a parameter may have it as well: then the
+/// parameter stands wherever it stands under another name, and nothing else is called so, in text,
+/// JSON and LaTeX.
 #[test]
 fn every_name_of_every_method_may_be_taken() {
     let equations = [
@@ -300,7 +346,10 @@ fn every_name_of_every_method_may_be_taken() {
                 let expected = plain.uses("kappa");
                 for name in plain.names() {
                     let Some(solution) = answered(&name, order) else {
-                        wrong.push(format!("{equation} with {name} by {} has no answer", method.name()));
+                        wrong.push(format!(
+                            "{equation} with {name} by {} has no answer",
+                            method.name()
+                        ));
                         continue;
                     };
                     let report = Report::of(&solution);
@@ -318,7 +367,12 @@ fn every_name_of_every_method_may_be_taken() {
             }
         }
     }
-    assert!(wrong.is_empty(), "{} of {tried}:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(
+        wrong.is_empty(),
+        "{} of {tried}:\n{}",
+        wrong.len(),
+        wrong.join("\n")
+    );
     assert!(tried > 400, "{tried}");
 }
 
@@ -351,8 +405,15 @@ fn a_greek_coordinate_is_set_as_its_letter() {
         "{document}"
     );
     // A comment is plain text.
-    let set: String = document.lines().filter(|line| !line.starts_with('%')).collect();
-    assert_eq!(set.replace("\\phi", "").matches("phi").count(), 0, "{document}");
+    let set: String = document
+        .lines()
+        .filter(|line| !line.starts_with('%'))
+        .collect();
+    assert_eq!(
+        set.replace("\\phi", "").matches("phi").count(),
+        0,
+        "{document}"
+    );
 }
 
 /// The phase of the answer gives way to a coordinate of the same name; nothing else changes.
@@ -367,11 +428,18 @@ fn a_coordinate_may_be_called_theta() {
             };
             solve(&oscillator, &options).ok()
         };
-        let (Some(plain), Some(named)) = (derived("x'' + k*sin(x) = 0"), derived("theta'' + k*sin(theta) = 0")) else {
-            assert!(derived("x'' + k*sin(x) = 0").is_none() && derived("theta'' + k*sin(theta) = 0").is_none());
+        let (Some(plain), Some(named)) = (
+            derived("x'' + k*sin(x) = 0"),
+            derived("theta'' + k*sin(theta) = 0"),
+        ) else {
+            assert!(
+                derived("x'' + k*sin(x) = 0").is_none()
+                    && derived("theta'' + k*sin(theta) = 0").is_none()
+            );
             continue;
         };
-        let text = |solution: &Solution| text::steps(solution) + &text::solution(solution, None, 0.01);
+        let text =
+            |solution: &Solution| text::steps(solution) + &text::solution(solution, None, 0.01);
         // First the phase, then the coordinate: the other order would make them one.
         let expected = words_replaced(&text(&plain), "theta", "phi");
         let expected = words_replaced(&expected, "dx", "dtheta_");
@@ -399,48 +467,68 @@ fn words_replaced(text: &str, word: &str, by: &str) -> String {
     replaced
 }
 
-/// The names of an equation stand in its answer as they were typed, and the letters of the answer give way: in numbers it is the answer to
-/// the same equation with other names.
+/// The names of an equation stand in its answer as they were typed, and the letters of the answer
+/// give way: in numbers it is the answer to the same equation with other names.
 #[test]
 fn letters_of_an_answer_give_way_to_names_of_the_equation() {
     for (own, plain) in [
         ("x'' + omega^2*x + A*x^3 = 0", "x'' + k^2*x + c*x^3 = 0"),
         ("A'' + omega^2*A + a*A^3 = 0", "x'' + k^2*x + c*x^3 = 0"),
-        ("omega'' + A^2*omega + a*omega^3 = 0", "x'' + k^2*x + c*x^3 = 0"),
+        (
+            "omega'' + A^2*omega + a*omega^3 = 0",
+            "x'' + k^2*x + c*x^3 = 0",
+        ),
     ] {
         let typed = Oscillator::parse(own).expect("an equation");
         assert!(solve(&typed, &Options::default()).is_err());
         let apart = typed.with_own_names_apart().expect("names of its own");
         let others = Oscillator::parse(plain).expect("an equation");
-        let by = |name: &str| apart.parameters.iter().copied().find(|own| own.name() == name);
+        let by = |name: &str| {
+            apart
+                .parameters
+                .iter()
+                .copied()
+                .find(|own| own.name() == name)
+        };
         let stiffness = by("omega").or(by("A")).expect("a parameter");
-        let nonlinear = apart.parameters.iter().copied().find(|own| *own != stiffness);
+        let nonlinear = apart
+            .parameters
+            .iter()
+            .copied()
+            .find(|own| *own != stiffness);
         let nonlinear = nonlinear.expect("another one");
         for method in Method::ALL {
             let options = Options {
                 method: Some(method),
                 ..Options::default()
             };
-            let (Ok(found), Ok(expected)) = (solve(&apart, &options), solve(&others, &options)) else {
+            let (Ok(found), Ok(expected)) = (solve(&apart, &options), solve(&others, &options))
+            else {
                 panic!("{own} by {}", method.name());
             };
             let amplitude = found.amplitude.symbol();
             let at = BTreeMap::from([(amplitude, 0.5), (stiffness, 1.5), (nonlinear, 0.75)]);
-            let found_value = evaluate(&apart, &found, &at).expect("a value").frequency_squared;
+            let found_value = evaluate(&apart, &found, &at)
+                .expect("a value")
+                .frequency_squared;
             let at = BTreeMap::from([(amplitude, 0.5), ("k".into(), 1.5), ("c".into(), 0.75)]);
-            let expected_value = evaluate(&others, &expected, &at).expect("a value").frequency_squared;
+            let expected_value = evaluate(&others, &expected, &at)
+                .expect("a value")
+                .frequency_squared;
             assert!(
                 (found_value / expected_value - 1.0).abs() < 1e-12,
                 "{own} by {}",
                 method.name()
             );
-            // Every name of the equation stands where it stands in the answer to the other, every letter of the answer likewise.
+            // Every name of the equation stands where it stands in the answer to the other, every
+            // letter of the answer likewise.
             let letters = found.letters();
             let report = text::solution(&found, None, 0.01) + &text::steps(&found);
             let words_found = words(&report);
             let report = text::solution(&expected, None, 0.01) + &text::steps(&expected);
             let words_expected = words(&report);
-            let count = |words: &BTreeMap<&str, usize>, name: &str| words.get(name).copied().unwrap_or(0);
+            let count =
+                |words: &BTreeMap<&str, usize>, name: &str| words.get(name).copied().unwrap_or(0);
             let primed = |name: &str| count(&words_found, name);
             assert_eq!(
                 primed(stiffness.name()),
@@ -478,33 +566,52 @@ fn letters_stand_in_every_format() {
     );
     let document = json::solution(&solution, None);
     assert_eq!(document.parameters, ["A", "omega"]);
-    let at = [("C", "1"), ("A", "1/10"), ("omega", "2")].map(|(name, value)| (name.into(), value.parse().unwrap()));
+    let at = [("C", "1"), ("A", "1/10"), ("omega", "2")]
+        .map(|(name, value)| (name.into(), value.parse().unwrap()));
     let mut values = lindstedt::Values::default();
     for (name, value) in at {
         values.insert(apart.meant(name), value).expect("a value");
     }
     let judged = lindstedt::judge(&apart, &solution, &values, 0.01).expect("a verdict");
     let report = text::solution(&solution, Some(&judged), 0.01);
-    assert!(report.contains("at C = 1, A = 1/10, omega = 2\n  Omega  "), "{report}");
+    assert!(
+        report.contains("at C = 1, A = 1/10, omega = 2\n  Omega  "),
+        "{report}"
+    );
     assert!(report.contains("within 1 % up to C = "), "{report}");
-    let read = json::read_solution(&serde_json::to_value(&document).expect("a document")).expect("a solution");
-    assert_eq!((read.law, read.displacement), (solution.law, solution.displacement));
+    let read = json::read_solution(&serde_json::to_value(&document).expect("a document"))
+        .expect("a solution");
+    assert_eq!(
+        (read.law, read.displacement),
+        (solution.law, solution.displacement)
+    );
 }
 
-/// Parameters called as the amplitude or the frequency of an answer are refused by the derivation, and taken under other names.
+/// Parameters called as the amplitude or the frequency of an answer are refused by the derivation,
+/// and taken under other names.
 #[test]
 fn parameters_with_names_of_answers_are_written_otherwise() {
     let typed = Oscillator::parse("x'' + omega^2*x + a*x^3 = 0").expect("an equation");
     assert!(solve(&typed, &Options::default()).is_err());
     let (free, renamed) = typed.with_names_of_answers_free().expect("other names");
-    assert_eq!(renamed, [("a".into(), "a1".into()), ("omega".into(), "omega0".into())]);
+    assert_eq!(
+        renamed,
+        [("a".into(), "a1".into()), ("omega".into(), "omega0".into())]
+    );
     let law = |oscillator: &Oscillator| {
         let solution = solve(oscillator, &Options::default()).expect("a law");
-        solution.law.frequency_squared().expect("a polynomial").to_string()
+        solution
+            .law
+            .frequency_squared()
+            .expect("a polynomial")
+            .to_string()
     };
     let plain = Oscillator::parse("x'' + omega0^2*x + a1*x^3 = 0").expect("an equation");
     assert_eq!(law(&free), law(&plain));
     let driven = Oscillator::parse("x'' + x = A*cos(omega*t)").expect("an equation");
     let (_, renamed) = driven.with_names_of_answers_free().expect("other names");
-    assert_eq!(renamed, [("A".into(), "A1".into()), ("omega".into(), "Omega".into())]);
+    assert_eq!(
+        renamed,
+        [("A".into(), "A1".into()), ("omega".into(), "Omega".into())]
+    );
 }

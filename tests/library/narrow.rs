@@ -1,4 +1,5 @@
-//! Wells, walls and switches much narrower than the motion, in place or on their way: closed forms by the energy, by both integrators.
+//! Wells, walls and switches much narrower than the motion, in place or on their way: closed forms
+//! by the energy, by both integrators.
 
 use std::f64::consts::PI;
 
@@ -8,7 +9,9 @@ use lindstedt::{Oscillator, Symbol};
 
 /// By power series, and by Runge-Kutta where two are wanted.
 fn followed(equation: &str, start: [f64; 2], duration: f64, count: usize) -> Vec<Trajectory> {
-    let integrators = [Integrator::Taylor, Integrator::RungeKutta].into_iter().take(count);
+    let integrators = [Integrator::Taylor, Integrator::RungeKutta]
+        .into_iter()
+        .take(count);
     let motion = |integrator: Integrator| {
         let mut course = Course::of_equation(&Oscillator::parse(equation).expect(equation));
         course.begin(Symbol::new("x"), start[0]).expect("a state");
@@ -30,7 +33,8 @@ fn least(motion: &Trajectory) -> f64 {
     motion.extremes()[0][0]
 }
 
-/// A bump in the force that is crossed on the way in: `x_m^2/2 = 1/2 + integral`, for a bell and for a pole beside the real line.
+/// A bump in the force that is crossed on the way in: `x_m^2/2 = 1/2 + integral`, for a bell and
+/// for a pole beside the real line.
 #[test]
 fn a_narrow_bump_in_place_gives_its_work() {
     for width in [1e-2_f64, 1e-4, 1e-6, 1e-8] {
@@ -48,7 +52,10 @@ fn a_narrow_bump_in_place_gives_its_work() {
                 motion.integrator
             );
             // Back where it began: what it has gained it gives back.
-            assert!((motion.extremes()[0][1] - 1.0).abs() < 2.0 * allowed, "{bell}");
+            assert!(
+                (motion.extremes()[0][1] - 1.0).abs() < 2.0 * allowed,
+                "{bell}"
+            );
         }
     }
     for width in [1e-4_f64, 1e-8] {
@@ -77,7 +84,10 @@ fn a_steep_switch_is_taken_where_it_is() {
         let expected = 0.2 - (0.04 + 1.0_f64).sqrt();
         for motion in followed(&equation, [1.0, 0.0], 20.0, 2) {
             let found = least(&motion);
-            assert!((found - expected).abs() < 1e-9, "{equation}: {found} {expected}");
+            assert!(
+                (found - expected).abs() < 1e-9,
+                "{equation}: {found} {expected}"
+            );
         }
     }
     // Beyond the speed 1/2 the force is less by 1/2: w = x' obeys w' = 1 - H(w - 1/2)/2.
@@ -102,7 +112,10 @@ fn a_pulse_that_meets_the_motion_on_its_way_counts() {
         for motion in followed(&equation, [0.0, -0.7], 10.0, 2) {
             let expected = 0.3 - (1.0 - 2.0 * work).sqrt();
             let found = motion.at(10.0).expect("a state")[1];
-            assert!((found - expected).abs() < 1e-9, "{equation}: {found} {expected}");
+            assert!(
+                (found - expected).abs() < 1e-9,
+                "{equation}: {found} {expected}"
+            );
         }
     }
 }

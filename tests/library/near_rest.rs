@@ -1,5 +1,6 @@
-//! Motions close to rest: the judge and the methods see a force to all digits however small the amplitude is beside the
-//! equilibrium, compared with the linear frequency and its first correction, both written out by hand.
+//! Motions close to rest: the judge and the methods see a force to all digits however small the
+//! amplitude is beside the equilibrium, compared with the linear frequency and its first
+//! correction, both written out by hand.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +19,9 @@ struct Case {
 
 fn cases() -> Vec<Case> {
     // x + 2.55 x^3 = 1.04 by Newton's iteration.
-    let load = (0..60).fold(0.5_f64, |x, _| x - (x + 2.55 * x.powi(3) - 1.04) / (1.0 + 7.65 * x * x));
+    let load = (0..60).fold(0.5_f64, |x, _| {
+        x - (x + 2.55 * x.powi(3) - 1.04) / (1.0 + 7.65 * x * x)
+    });
     let dottie = (0..60).fold(0.7_f64, |x, _| x - (x - x.cos()) / (1.0 + x.sin()));
     // x + x |x| = 1/3.
     let root = 0.5 * ((7.0_f64 / 3.0).sqrt() - 1.0);
@@ -57,7 +60,8 @@ fn cases() -> Vec<Case> {
         Case {
             equation: "(1 + x^2)*x'' + x*x'^2 + exp(x) - 1 = 0",
             equilibrium: 0.0,
-            // The inertia adds -1/2 of omega0^2 to the third coefficient's share, which the tolerance below leaves out.
+            // The inertia adds -1/2 of omega0^2 to the third coefficient's share, which the
+            // tolerance below leaves out.
             coefficients: [1.0, 0.5, 1.0 / 6.0],
         },
     ]
@@ -68,7 +72,9 @@ const POWERS: [i32; 8] = [3, 5, 7, 8, 9, 10, 12, 30];
 fn at(amplitude: f64) -> Values {
     let mut values = Values::default();
     let text = format!("{amplitude:e}");
-    values.insert(Symbol::new("A"), text.parse().unwrap()).unwrap();
+    values
+        .insert(Symbol::new("A"), text.parse().unwrap())
+        .unwrap();
     values
 }
 
@@ -118,13 +124,17 @@ fn the_true_frequency_keeps_its_digits_at_every_amplitude() {
                 let deviation = judged.max_deviation.expect("a motion");
                 assert!(deviation < rounding, "{context}: deviation {deviation:e}");
                 let residual = judged.residual.expect("a motion");
-                assert!(residual < 100.0 * rounding, "{context}: residual {residual:e}");
+                assert!(
+                    residual < 100.0 * rounding,
+                    "{context}: residual {residual:e}"
+                );
             }
         }
     }
 }
 
-/// `sin x = 1/3` has the separatrix through `pi - asin(1/3)`, however small the amplitude asked for is; `exp(x) - 1` has none.
+/// `sin x = 1/3` has the separatrix through `pi - asin(1/3)`, however small the amplitude asked for
+/// is; `exp(x) - 1` has none.
 #[test]
 fn the_edge_of_the_well_does_not_depend_on_the_amplitude_asked_for() {
     let oscillator = Oscillator::parse("x'' + sin(x) - 1/3 = 0").unwrap();
@@ -140,7 +150,11 @@ fn the_edge_of_the_well_does_not_depend_on_the_amplitude_asked_for() {
     let solution = solve(&oscillator, &Options::default()).unwrap();
     for power in [8, 16, 30, 100] {
         let judged = judge(&oscillator, &solution, &at(10.0_f64.powi(-power)), 0.01).unwrap();
-        let texts: Vec<&str> = judged.ranges.iter().map(|range| range.text.as_str()).collect();
+        let texts: Vec<&str> = judged
+            .ranges
+            .iter()
+            .map(|range| range.text.as_str())
+            .collect();
         assert!(
             texts.iter().all(|text| !text.contains("periodic for")),
             "1e-{power}: {texts:?}"
@@ -148,8 +162,8 @@ fn the_edge_of_the_well_does_not_depend_on_the_amplitude_asked_for() {
     }
 }
 
-/// A barrier beyond the part of the motion in which rounding shows is not lost with it: two halves of linear motions, joined
-/// where the barrier begins.
+/// A barrier beyond the part of the motion in which rounding shows is not lost with it: two halves
+/// of linear motions, joined where the barrier begins.
 #[test]
 fn a_barrier_far_from_rest_stays_in_the_force() {
     for (length, stiffness) in [(378_000.0_f64, 566e18_f64), (0.378, 566e18), (1e-7, 1e9)] {
@@ -166,13 +180,17 @@ fn a_barrier_far_from_rest_stays_in_the_force() {
             .unwrap()
             .frequency_squared
             .sqrt();
-        // Behind the barrier: a linear motion about another centre, entered at the speed of the first.
+        // Behind the barrier: a linear motion about another centre, entered at the speed of the
+        // first.
         let (outer, inner) = (241e13_f64.sqrt(), (241e13 + stiffness).sqrt());
         let centre = stiffness * length / (241e13 + stiffness);
         let speed = outer * (amplitude * amplitude - length * length).sqrt();
         let behind = 2.0 * (speed / inner).atan2(length - centre) / inner;
         let before = 2.0 * (std::f64::consts::PI - (length / amplitude.abs()).acos()) / outer;
         let expected = std::f64::consts::TAU / (behind + before);
-        assert!((found / expected - 1.0).abs() < 1e-9, "{equation}: {found} {expected}");
+        assert!(
+            (found / expected - 1.0).abs() < 1e-9,
+            "{equation}: {found} {expected}"
+        );
     }
 }

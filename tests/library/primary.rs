@@ -1,13 +1,13 @@
-//! The main mass with its damper held against independent formulations: limits in closed form, equations written by hand and followed by
-//! Runge-Kutta, momentum and energy over every impact.
+//! The main mass with its damper held against independent formulations: limits in closed form,
+//! equations written by hand and followed by Runge-Kutta, momentum and energy over every impact.
 
 use std::collections::BTreeMap;
 
 use lindstedt::Symbol;
 use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::impact::primary::{
-    Primary, PrimaryCase, PrimaryError, PrimaryMotion, PrimaryParameter, PrimarySettings, PrimaryState, PrimaryStop,
-    simulate_primary, sweep_primary,
+    Primary, PrimaryCase, PrimaryError, PrimaryMotion, PrimaryParameter, PrimarySettings,
+    PrimaryState, PrimaryStop, simulate_primary, sweep_primary,
 };
 use lindstedt::impact::{Friction, Integrator, Model, Settings, Start, simulate};
 use lindstedt::problem::Problem;
@@ -104,8 +104,14 @@ fn a_heavy_main_mass_leaves_the_pendulum_alone() {
         );
         assert_eq!(motion.impacts.len(), truth.impacts.len(), "{model:?}");
         for (own, truth) in motion.impacts.iter().zip(&truth.impacts) {
-            assert!((own.entry - truth.entry_time).abs() < 1e-7, "{own:?} {truth:?}");
-            assert!((own.speed_in - truth.speed_in).abs() < 1e-7, "{own:?} {truth:?}");
+            assert!(
+                (own.entry - truth.entry_time).abs() < 1e-7,
+                "{own:?} {truth:?}"
+            );
+            assert!(
+                (own.speed_in - truth.speed_in).abs() < 1e-7,
+                "{own:?} {truth:?}"
+            );
         }
         for index in 0..=400 {
             let t = 0.1 * f64::from(index);
@@ -116,7 +122,8 @@ fn a_heavy_main_mass_leaves_the_pendulum_alone() {
     }
 }
 
-/// Without contact small swings are linear: two modes, from the quadratic (kappa - (R + 1) s)(1 - s) = s^2.
+/// Without contact small swings are linear: two modes, from the quadratic (kappa - (R + 1) s)(1 -
+/// s) = s^2.
 #[test]
 fn without_contact_it_is_the_linear_system_of_two_modes() {
     let (r, kappa) = (MASS.mass, MASS.stiffness);
@@ -150,7 +157,10 @@ fn without_contact_it_is_the_linear_system_of_two_modes() {
         assert!((state.y - y).abs() < 1e-9 * size, "{t}: {} {y}", state.y);
     }
     // With the pendulum held by friction, and without the pendulum's say: in closed form.
-    let damped = Primary { damping: 0.8, ..MASS };
+    let damped = Primary {
+        damping: 0.8,
+        ..MASS
+    };
     let held = Model { alpha: 1e3, ..FREE };
     let motion = follow(
         PrimaryCase {
@@ -182,8 +192,9 @@ fn without_contact_it_is_the_linear_system_of_two_modes() {
     assert!((rest.expect("a rest time") / locked - 1.0).abs() < 1e-9);
 }
 
-/// The contact is inside: over an impact the momentum of both changes by spring, dashpot and force alone, the energy by what the
-/// contact takes; integrated along the path, not read from the equations.
+/// The contact is inside: over an impact the momentum of both changes by spring, dashpot and force
+/// alone, the energy by what the contact takes; integrated along the path, not read from the
+/// equations.
 #[test]
 fn momentum_and_energy_balance_over_every_impact() {
     let primary = Primary {
@@ -250,7 +261,11 @@ fn no_impact_is_missed() {
         right: Some(0.2),
         ..FREE
     };
-    for start in [[0.0, 0.0, 0.4, 0.0], [0.1, 0.3, -0.2, 1.0], [0.0, 0.0, 0.05, 0.0]] {
+    for start in [
+        [0.0, 0.0, 0.4, 0.0],
+        [0.1, 0.3, -0.2, 1.0],
+        [0.0, 0.0, 0.05, 0.0],
+    ] {
         let motion = follow(
             PrimaryCase {
                 primary: MASS,
@@ -275,14 +290,19 @@ fn no_impact_is_missed() {
     }
 }
 
-/// The motion by equations that are solved by hand, q + p cos x = g and (R + 1) p + q cos x = h, with a barrier at `place`, followed by
-/// Runge-Kutta; every passage of the barrier is listed.
+/// The motion by equations that are solved by hand, q + p cos x = g and (R + 1) p + q cos x = h,
+/// with a barrier at `place`, followed by Runge-Kutta; every passage of the barrier is listed.
 fn by_hand(primary: Primary, model: Model, place: f64, start: [f64; 4], until: f64) -> Path {
     let g = "(-sin(x) - 2*zeta*v - (gamma + mu*v)*((x - c)^2)^(3/4)*H(x - c))";
     let h = "(v^2*sin(x) - delta*u - kappa*y + f*sin(eta*t))";
     let p = format!("(({h} - {g}*cos(x))/(R + sin(x)^2))");
     let read = |text: &str| -> Expr { parse_expression(text).expect("an expression") };
-    let right = [read("v"), read(&format!("{g} - {p}*cos(x)")), read("u"), read(&p)];
+    let right = [
+        read("v"),
+        read(&format!("{g} - {p}*cos(x)")),
+        read("u"),
+        read(&p),
+    ];
     let numbers: BTreeMap<Symbol, f64> = [
         ("R", primary.mass),
         ("kappa", primary.stiffness),
@@ -304,10 +324,13 @@ fn by_hand(primary: Primary, model: Model, place: f64, start: [f64; 4], until: f
         ..Options::default()
     };
     let passages = [Event::record(read("x - c"))];
-    system.solve(0.0, &start, until, &passages, &options).expect("a path")
+    system
+        .solve(0.0, &start, until, &passages, &options)
+        .expect("a path")
 }
 
-/// The accelerations solved by hand, the contact as |d|^(3/2) behind its step, followed by Runge-Kutta in the time itself.
+/// The accelerations solved by hand, the contact as |d|^(3/2) behind its step, followed by
+/// Runge-Kutta in the time itself.
 #[test]
 fn equations_written_by_hand_agree() {
     let model = Model {
@@ -324,7 +347,14 @@ fn equations_written_by_hand_agree() {
         ..MASS
     };
     let start = [-0.8, 0.0, 0.1, 0.0];
-    let motion = follow(PrimaryCase { primary, model, start }, 25.0);
+    let motion = follow(
+        PrimaryCase {
+            primary,
+            model,
+            start,
+        },
+        25.0,
+    );
     assert!(motion.impacts.len() >= 3, "{}", motion.impacts.len());
     let path = by_hand(primary, model, 0.3, start, 25.0);
     assert_eq!(path.occurrences().len(), 2 * motion.impacts.len());
@@ -352,7 +382,10 @@ fn the_long_run_of_a_locked_damper_is_the_resonance_curve() {
         start: [0.0; 4],
     };
     let motions = [0.5, 1.2, 1.4, 2.5].map(|frequency| {
-        let primary = Primary { frequency, ..primary };
+        let primary = Primary {
+            frequency,
+            ..primary
+        };
         (PrimaryCase { primary, ..case }, settings(300.0))
     });
     let rows = sweep_primary(&motions, |_| ()).expect("rows");
@@ -376,10 +409,14 @@ fn the_long_run_of_a_locked_damper_is_the_resonance_curve() {
     assert_eq!(one.largest_since(225.0), rows[1].amplitude);
 }
 
-/// A damper with losses brings the main mass to rest sooner than without, and where nothing takes energy nothing rests.
+/// A damper with losses brings the main mass to rest sooner than without, and where nothing takes
+/// energy nothing rests.
 #[test]
 fn what_the_damper_is_worth() {
-    let primary = Primary { damping: 0.4, ..MASS };
+    let primary = Primary {
+        damping: 0.4,
+        ..MASS
+    };
     let caged = Model {
         gamma: 1e6,
         mu: 5e5,
@@ -401,7 +438,8 @@ fn what_the_damper_is_worth() {
     .expect("a rest time");
     let others = primary.others();
     assert!(
-        with < others.locked.rest_time.expect("a rest time") && with < others.without.rest_time.expect("a rest time")
+        with < others.locked.rest_time.expect("a rest time")
+            && with < others.without.rest_time.expect("a rest time")
     );
     let lossless = follow(
         PrimaryCase {
@@ -427,7 +465,8 @@ fn what_cannot_be_followed_is_said() {
         model: FREE,
         start: [0.0, 0.0, 0.1, 0.0],
     };
-    let refused = |case: PrimaryCase| simulate_primary(case, &settings(1.0)).expect_err("a refusal");
+    let refused =
+        |case: PrimaryCase| simulate_primary(case, &settings(1.0)).expect_err("a refusal");
     for (primary, word) in [
         (Primary { mass: 0.0, ..MASS }, "mass"),
         (
@@ -460,7 +499,13 @@ fn what_cannot_be_followed_is_said() {
         frequency_ratio: 1.0,
         ..FREE
     };
-    assert_eq!(refused(PrimaryCase { model: driven, ..case }), PrimaryError::Driven);
+    assert_eq!(
+        refused(PrimaryCase {
+            model: driven,
+            ..case
+        }),
+        PrimaryError::Driven
+    );
     let wall = Model {
         right: Some(0.1),
         ..FREE
@@ -485,7 +530,8 @@ fn what_cannot_be_followed_is_said() {
     assert_eq!(short.stop, PrimaryStop::PhaseLimit);
 }
 
-/// From rest or with speed on a barrier's surface, and pressed against it: by hand and Runge-Kutta, as above.
+/// From rest or with speed on a barrier's surface, and pressed against it: by hand and Runge-Kutta,
+/// as above.
 #[test]
 fn a_start_on_a_barrier_is_a_start_in_contact() {
     let primary = Primary {
@@ -507,7 +553,14 @@ fn a_start_on_a_barrier_is_a_start_in_contact() {
             right: Some(place),
             ..FREE
         };
-        let motion = follow(PrimaryCase { primary, model, start }, 10.0);
+        let motion = follow(
+            PrimaryCase {
+                primary,
+                model,
+                start,
+            },
+            10.0,
+        );
         let path = by_hand(primary, model, place, start, 10.0);
         for index in 0..=100 {
             let t = 0.1 * f64::from(index);
@@ -583,24 +636,33 @@ fn the_pendulum_of_a_heavy_main_mass_rests_as_on_a_fixed_pivot() {
         );
         // The force of the first impact is that on the fixed pivot.
         if let (Some(impact), Some(contact)) = (motion.impacts.first(), alone.impacts.first()) {
-            let (found, truth) = (motion.peak_force(impact), alone.peak_force(contact).expect("a force"));
+            let (found, truth) = (
+                motion.peak_force(impact),
+                alone.peak_force(contact).expect("a force"),
+            );
             assert!((found / truth - 1.0).abs() < 1e-6, "{found} {truth}");
         }
     }
 }
 
-/// The torque that friction must bear where the pendulum stands still relative to the main mass, by the equations solved by hand:
-/// (R + 1) y'' = f sin(eta t) - delta y' - kappa y and G = sin x + y'' cos x + contact.
+/// The torque that friction must bear where the pendulum stands still relative to the main mass, by
+/// the equations solved by hand: (R + 1) y'' = f sin(eta t) - delta y' - kappa y and G = sin x +
+/// y'' cos x + contact.
 fn torque_at_rest(case: &PrimaryCase, t: f64, state: &PrimaryState) -> f64 {
     let (primary, model) = (&case.primary, &case.model);
     let drive = primary.force * (primary.frequency * t).sin();
-    let acceleration = (drive - primary.damping * state.speed - primary.stiffness * state.y) / (primary.mass + 1.0);
-    let depth = |place: Option<f64>, side: f64| place.map_or(0.0, |place| (side * (state.x - place)).max(0.0));
+    let acceleration = (drive - primary.damping * state.speed - primary.stiffness * state.y)
+        / (primary.mass + 1.0);
+    let depth = |place: Option<f64>, side: f64| {
+        place.map_or(0.0, |place| (side * (state.x - place)).max(0.0))
+    };
     let push = |depth: f64| model.gamma * depth.powf(1.5);
-    state.x.sin() + state.x.cos() * acceleration + push(depth(model.right, 1.0)) - push(depth(model.left, -1.0))
+    state.x.sin() + state.x.cos() * acceleration + push(depth(model.right, 1.0))
+        - push(depth(model.left, -1.0))
 }
 
-/// The number of moments, of so many, at which the pendulum has stood still since the one before; at each the torque is at most alpha.
+/// The number of moments, of so many, at which the pendulum has stood still since the one before;
+/// at each the torque is at most alpha.
 fn held_moments(motion: &PrimaryMotion, moments: u32) -> usize {
     let alpha = motion.case.model.alpha;
     let mut held = 0;
@@ -614,7 +676,11 @@ fn held_moments(motion: &PrimaryMotion, moments: u32) -> usize {
         if stays {
             held += 1;
             let torque = torque_at_rest(&motion.case, t, &state);
-            assert!(torque.abs() <= alpha * (1.0 + 1e-9), "{t}: {torque} {:?}", motion.case);
+            assert!(
+                torque.abs() <= alpha * (1.0 + 1e-9),
+                "{t}: {torque} {:?}",
+                motion.case
+            );
         }
     }
     held
@@ -635,21 +701,31 @@ fn example(text: &str, varied: &[(&str, f64)]) -> PrimaryMotion {
 
 const STICK_SLIP: &str = include_str!("../../examples/primary/stick-slip.toml");
 
-/// While a pendulum is held, the torque that friction must bear is at most alpha: at the onset of a slip velocity and acceleration are
-/// both zero, and rounding may not decide.
+/// While a pendulum is held, the torque that friction must bear is at most alpha: at the onset of a
+/// slip velocity and acceleration are both zero, and rounding may not decide.
 #[test]
 fn a_pendulum_is_held_only_while_friction_can_bear_the_torque() {
     let mut held = 0;
     for index in 0..8 {
         let displacement = 0.0103 + 0.002 * f64::from(index);
-        held += held_moments(&example(STICK_SLIP, &[("displacement", displacement)]), 3000);
+        held += held_moments(
+            &example(STICK_SLIP, &[("displacement", displacement)]),
+            3000,
+        );
     }
-    for (force, frequency) in [(0.3, 9.0), (0.8, 11.0), (1.5, 14.0), (0.2, 17.0), (2.0, 5.0)] {
+    for (force, frequency) in [
+        (0.3, 9.0),
+        (0.8, 11.0),
+        (1.5, 14.0),
+        (0.2, 17.0),
+        (2.0, 5.0),
+    ] {
         let varied = [("force", force), ("frequency", frequency), ("alpha", 0.2)];
         held += held_moments(&example(STICK_SLIP, &varied), 3000);
     }
     assert!(held > 5000, "{held}");
-    // By an event-driven Runge-Kutta of order 8 (scipy's DOP853, 1e-11, steps of 1e-5 in contact) with the contact as |d|^(3/2) in t.
+    // By an event-driven Runge-Kutta of order 8 (scipy's DOP853, 1e-11, steps of 1e-5 in contact)
+    // with the contact as |d|^(3/2) in t.
     for (displacement, impacts, rest) in [(0.0163, 7, 48.655_261_6), (0.02, 10, 59.512_111_5)] {
         let motion = example(STICK_SLIP, &[("displacement", displacement)]);
         assert_eq!(motion.impacts.len(), impacts, "{displacement}");
@@ -660,8 +736,8 @@ fn a_pendulum_is_held_only_while_friction_can_bear_the_torque() {
     }
 }
 
-/// Held while a driven main mass shakes it, in closed form: the steady swing of the locked mass tears the pendulum loose exactly where its
-/// acceleration exceeds alpha.
+/// Held while a driven main mass shakes it, in closed form: the steady swing of the locked mass
+/// tears the pendulum loose exactly where its acceleration exceeds alpha.
 #[test]
 fn a_shaken_pendulum_slips_exactly_where_the_acceleration_exceeds_the_friction() {
     // Undamped and started on its steady motion y = Y sin(eta t), Y = f/(kappa - (R + 1) eta^2).
@@ -691,8 +767,9 @@ fn a_shaken_pendulum_slips_exactly_where_the_acceleration_exceeds_the_friction()
     }
 }
 
-/// The contact acts from the start where the motion begins inside a barrier: at rest, moving in, moving out, moving out faster than the
-/// barrier comes back, by hand and Runge-Kutta as above; held by friction, by the torque.
+/// The contact acts from the start where the motion begins inside a barrier: at rest, moving in,
+/// moving out, moving out faster than the barrier comes back, by hand and Runge-Kutta as above;
+/// held by friction, by the torque.
 #[test]
 fn a_start_inside_a_barrier_is_a_start_in_contact() {
     let primary = Primary {
@@ -710,23 +787,44 @@ fn a_start_inside_a_barrier_is_a_start_in_contact() {
     };
     for velocity in [0.0, 0.8, -0.5] {
         let start = [0.15, velocity, 0.1, -0.2];
-        let motion = follow(PrimaryCase { primary, model, start }, 10.0);
+        let motion = follow(
+            PrimaryCase {
+                primary,
+                model,
+                start,
+            },
+            10.0,
+        );
         let path = by_hand(primary, model, 0.1, start, 10.0);
         for index in 0..=100 {
             let t = 0.1 * f64::from(index);
             let (own, other) = (motion.at(t).expect("a state"), path.at(t).expect("a state"));
             for (own, other) in [own.x, own.velocity, own.y, own.speed].iter().zip(other) {
-                assert!((own - other).abs() < 1e-6, "{velocity} at {t}: {own} {other}");
+                assert!(
+                    (own - other).abs() < 1e-6,
+                    "{velocity} at {t}: {own} {other}"
+                );
             }
         }
         let first = motion.impacts[0];
         assert_eq!((first.entry, first.speed_in), (0.0, velocity));
         assert!(first.penetration >= 0.05 - 1e-15 && first.exit.is_some());
     }
-    // Faster outwards than the barrier follows: nothing pushes, as if there were no barrier, until it is out.
+    // Faster outwards than the barrier follows: nothing pushes, as if there were no barrier, until
+    // it is out.
     let start = [0.15, -8.0, 0.0, 0.0];
-    let motion = follow(PrimaryCase { primary, model, start }, 1.0);
-    let free = Model { right: None, ..model };
+    let motion = follow(
+        PrimaryCase {
+            primary,
+            model,
+            start,
+        },
+        1.0,
+    );
+    let free = Model {
+        right: None,
+        ..model
+    };
     let without = follow(
         PrimaryCase {
             primary,
@@ -742,7 +840,10 @@ fn a_start_inside_a_barrier_is_a_start_in_contact() {
     }
     assert!((motion.impacts[0].energy_lost - model.elastic_energy(0.05)).abs() < 1e-12);
     // Friction that bears the contact and gravity holds it there.
-    let held = Model { alpha: 60.0, ..model };
+    let held = Model {
+        alpha: 60.0,
+        ..model
+    };
     let start = [0.15, 0.0, 0.3, 0.0];
     let motion = follow(
         PrimaryCase {
@@ -759,15 +860,27 @@ fn a_start_inside_a_barrier_is_a_start_in_contact() {
         right: None,
         ..model
     };
-    let [right, left] = [(model, [0.15, 0.3, 0.1, 0.0]), (mirrored, [-0.15, -0.3, -0.1, 0.0])].map(|(model, start)| {
-        follow(PrimaryCase { primary, model, start }, 10.0)
-            .at(10.0)
-            .expect("a state")
+    let [right, left] = [
+        (model, [0.15, 0.3, 0.1, 0.0]),
+        (mirrored, [-0.15, -0.3, -0.1, 0.0]),
+    ]
+    .map(|(model, start)| {
+        follow(
+            PrimaryCase {
+                primary,
+                model,
+                start,
+            },
+            10.0,
+        )
+        .at(10.0)
+        .expect("a state")
     });
     assert!((right.x + left.x).abs() < 1e-12 && (right.y + left.y).abs() < 1e-12);
 }
 
-/// A sweep over several numbers at a time is, motion for motion, what the file says with these numbers in it.
+/// A sweep over several numbers at a time is, motion for motion, what the file says with these
+/// numbers in it.
 #[test]
 fn a_sweep_is_what_the_file_says_with_other_numbers() {
     let text = "[primary]\nmass = 0.3\nstiffness = 40\ndamping = 0.5\ndisplacement = 0.02\n\
@@ -785,18 +898,30 @@ fn a_sweep_is_what_the_file_says_with_other_numbers() {
         (&[("primary.mass", 0.5)][..], "mass = 0.3", "mass = 0.5"),
         (&[("mass_ratio", 50.0)], "mass = 0.3", "mass = 0.56"),
         (&[("stiffness", 60.0)], "stiffness = 40", "stiffness = 60"),
-        (&[("primary.damping", 0.1)], "damping = 0.5", "damping = 0.1"),
+        (
+            &[("primary.damping", 0.1)],
+            "damping = 0.5",
+            "damping = 0.1",
+        ),
         (
             &[("displacement", -0.01)],
             "displacement = 0.02",
             "displacement = -0.01",
         ),
         (&[("barrier", 0.05)], "barrier = 0.2", "barrier = 0.05"),
-        (&[("mu_over_gamma", 0.1)], "mu_over_gamma = 0.3", "mu_over_gamma = 0.1"),
+        (
+            &[("mu_over_gamma", 0.1)],
+            "mu_over_gamma = 0.3",
+            "mu_over_gamma = 0.1",
+        ),
         (&[("gamma", 1e5)], "[contact]", "[contact]\ngamma = 1e5"),
         (&[("alpha", 0.1)], "[run]", "[damping]\nalpha = 0.1\n[run]"),
         (&[("length", 0.1)], "[run]", "[design]\nlength = 0.1\n[run]"),
-        (&[("design.mass", 0.02)], "[run]", "[design]\nmass = 0.02\n[run]"),
+        (
+            &[("design.mass", 0.02)],
+            "[run]",
+            "[design]\nmass = 0.02\n[run]",
+        ),
         (
             &[("pendulum.speed", 0.3), ("start", -0.1)],
             "barrier = 0.2",
@@ -811,19 +936,28 @@ fn a_sweep_is_what_the_file_says_with_other_numbers() {
         let typed: Problem = text.replace(from, to).parse().expect("a problem");
         let (own, other) = (followed(&file, varied), followed(&typed, &[]));
         let close = |one: f64, other: f64| (one - other).abs() <= 1e-12 * other.abs();
-        assert!(close(own.0.primary.mass, other.0.primary.mass), "{varied:?}");
+        assert!(
+            close(own.0.primary.mass, other.0.primary.mass),
+            "{varied:?}"
+        );
         let primary = Primary {
             mass: other.0.primary.mass,
             ..own.0.primary
         };
-        assert_eq!((PrimaryCase { primary, ..own.0 }, own.1, own.2), other, "{varied:?}");
+        assert_eq!(
+            (PrimaryCase { primary, ..own.0 }, own.1, own.2),
+            other,
+            "{varied:?}"
+        );
     }
     let refused = |varied: &[(&str, f64)]| {
         let varied: Vec<(PrimaryParameter, f64)> = varied
             .iter()
             .map(|(name, value)| (name.parse().expect("a parameter"), *value))
             .collect();
-        file.primary_case(&varied).expect_err("a refusal").to_string()
+        file.primary_case(&varied)
+            .expect_err("a refusal")
+            .to_string()
     };
     assert!(refused(&[("mass_ratio", 50.0), ("primary.mass", 1.0)]).contains("sweep one of them"));
     assert!(refused(&[("frequency", 9.0)]).contains("force"));

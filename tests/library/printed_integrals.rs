@@ -1,5 +1,5 @@
-//! Laws that have no closed form are printed as integrals: evaluated as they stand, at the numbers that are given with them,
-//! every printed equation holds.
+//! Laws that have no closed form are printed as integrals: evaluated as they stand, at the numbers
+//! that are given with them, every printed equation holds.
 
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
@@ -29,7 +29,8 @@ fn value(formula: &Formula, numbers: &Numbers, context: &Context) -> Option<f64>
             integrand,
             variable,
         } => {
-            // The double exponential rule (H. Takahasi, M. Mori, Publ. RIMS 9 (1974) 721), for roots below the line at the ends.
+            // The double exponential rule (H. Takahasi, M. Mori, Publ. RIMS 9 (1974) 721), for
+            // roots below the line at the ends.
             const STEP: f64 = 0.06;
             let [factor, from, to] = [factor, from, to].map(|part| part.evaluate(numbers).ok());
             let (from, to) = (from?, to?);
@@ -61,7 +62,8 @@ fn equations_hold(lines: &[Line], numbers: &mut Numbers, context: &Context, name
             let excess = |x: f64| {
                 let mut there = numbers.clone();
                 there.insert(unknown, x);
-                let [left, right] = [&line.equal[0], &line.equal[1]].map(|side| value(side, &there, context));
+                let [left, right] =
+                    [&line.equal[0], &line.equal[1]].map(|side| value(side, &there, context));
                 left.expect("an equation") - right.expect("an equation")
             };
             let (mut near, mut far) = (-0.05 * amplitude, -1.9 * amplitude);
@@ -78,7 +80,10 @@ fn equations_hold(lines: &[Line], numbers: &mut Numbers, context: &Context, name
             continue;
         }
         let indices: Vec<f64> = match line.words.strip_prefix("for k = ") {
-            Some(list) => list.split(", ").map(|k| k.parse().expect("a harmonic")).collect(),
+            Some(list) => list
+                .split(", ")
+                .map(|k| k.parse().expect("a harmonic"))
+                .collect(),
             None => vec![1.0],
         };
         for k in indices {
@@ -88,12 +93,20 @@ fn equations_hold(lines: &[Line], numbers: &mut Numbers, context: &Context, name
                 .iter()
                 .filter_map(|part| value(part, numbers, context))
                 .collect();
-            if values.len() < 2 || !line.equal.iter().any(|part| matches!(part, Formula::Integral { .. })) {
+            if values.len() < 2
+                || !line
+                    .equal
+                    .iter()
+                    .any(|part| matches!(part, Formula::Integral { .. }))
+            {
                 continue;
             }
             for other in &values[1..] {
                 let size = values[0].abs().max(other.abs()).max(0.1);
-                assert!((values[0] - other).abs() < 5e-6 * size, "{name}: {line}: {values:?}");
+                assert!(
+                    (values[0] - other).abs() < 5e-6 * size,
+                    "{name}: {line}: {values:?}"
+                );
             }
             count += 1;
         }
@@ -124,8 +137,16 @@ fn every_printed_integral_is_the_number_given_with_it() {
         ("x'' + sin(x) - sin(x)*cos(x)/2 = 0", |_| 1.0, 2),
         ("x'' + x + x*x'^2 = 0", |x| (x * x).exp(), 3),
         // log M = 2 int g, g what stands before x'^2.
-        ("(1 + x^4)*x'' + 2*x^3*x'^2 + sin(x) = 0", |x| 1.0 + x.powi(4), 3),
-        ("(1 + x^4)*x'' + 2*x^3*x'^2 + x + x^2/5 = 0", |x| 1.0 + x.powi(4), 2),
+        (
+            "(1 + x^4)*x'' + 2*x^3*x'^2 + sin(x) = 0",
+            |x| 1.0 + x.powi(4),
+            3,
+        ),
+        (
+            "(1 + x^4)*x'' + 2*x^3*x'^2 + x + x^2/5 = 0",
+            |x| 1.0 + x.powi(4),
+            2,
+        ),
         (
             "(2 + cos(x)^2)*x'' - sin(x)*cos(x)*x'^2 + 2*sin(x) = 0",
             |x| (2.0 + x.cos().powi(2)) / 3.0,
@@ -152,7 +173,8 @@ fn every_printed_integral_is_the_number_given_with_it() {
             let amplitude = 0.9;
             let name = format!("{equation} by {} at {amplitude}", method.name());
             let mut numbers = Numbers::from([("A".into(), amplitude)]);
-            let found = evaluate(&oscillator, &solution, &numbers).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let found = evaluate(&oscillator, &solution, &numbers)
+                .unwrap_or_else(|error| panic!("{name}: {error}"));
             let omega = found.frequency_squared.sqrt();
             numbers.extend(found.chosen.iter().copied());
             numbers.extend([
@@ -190,21 +212,31 @@ fn every_printed_integral_is_the_number_given_with_it() {
         }
         counts.push((equation, methods, expected));
     }
-    let others: Vec<_> = counts.iter().filter(|(_, found, expected)| found != expected).collect();
+    let others: Vec<_> = counts
+        .iter()
+        .filter(|(_, found, expected)| found != expected)
+        .collect();
     assert!(others.is_empty(), "{others:?}");
 }
 
-/// Released on the other side, the motion turns on this one, and the printed period counts from there to A.
+/// Released on the other side, the motion turns on this one, and the printed period counts from
+/// there to A.
 #[test]
 fn the_period_of_a_negative_amplitude_is_printed_as_well() {
     for (equation, mass) in [
         ("x'' + x + x^2 = 0", (|_| 1.0) as fn(f64) -> f64),
         ("x'' + 2*x + x^2/(1 + x^4) = 0", |_| 1.0),
         ("x'' + x + x*abs(x)/2 + x^2/5 = 0", |_| 1.0),
-        ("(1 + x^4)*x'' + 2*x^3*x'^2 + x + x^2/5 = 0", |x| 1.0 + x.powi(4)),
+        ("(1 + x^4)*x'' + 2*x^3*x'^2 + x + x^2/5 = 0", |x| {
+            1.0 + x.powi(4)
+        }),
     ] {
         let (oscillator, solution) = derived(equation, Method::Exact).expect(equation);
-        let words: Vec<&str> = solution.derivation.iter().map(|line| line.words.as_str()).collect();
+        let words: Vec<&str> = solution
+            .derivation
+            .iter()
+            .map(|line| line.words.as_str())
+            .collect();
         let said = |text: &str| words.iter().any(|words| words.contains(text));
         assert!(
             said("x1, of the other sign than A") && said("for A < 0 from A to x1"),
@@ -257,7 +289,8 @@ fn integrals_on_the_way_to_a_closed_law_are_its_terms() {
     assert_eq!(counts, [3, 5, 5, 7]);
 }
 
-/// Between corners, too, a balance leaves nothing of its harmonics in the equation: by the midpoint rule, as fine as it takes.
+/// Between corners, too, a balance leaves nothing of its harmonics in the equation: by the midpoint
+/// rule, as fine as it takes.
 #[test]
 fn balances_of_forces_with_corners_hold() {
     const POINTS: usize = 40_000;
@@ -287,7 +320,8 @@ fn balances_of_forces_with_corners_hold() {
             for &k in harmonics {
                 let left = |i: usize| {
                     let theta = PI * (i as f64 + 0.5) / POINTS as f64;
-                    let defect = found.frequency_squared * acceleration.evaluate(theta) + force(motion.evaluate(theta));
+                    let defect = found.frequency_squared * acceleration.evaluate(theta)
+                        + force(motion.evaluate(theta));
                     defect * (k as f64 * theta).cos() / POINTS as f64
                 };
                 let rest: f64 = (0..POINTS).map(left).sum();
@@ -300,7 +334,8 @@ fn balances_of_forces_with_corners_hold() {
     }
 }
 
-/// A branch that is followed from rest to an amplitude arrives there, wherever its last step would have ended.
+/// A branch that is followed from rest to an amplitude arrives there, wherever its last step would
+/// have ended.
 #[test]
 fn a_balance_is_found_at_every_amplitude() {
     for equation in [
@@ -326,8 +361,8 @@ fn a_balance_is_found_at_every_amplitude() {
     }
 }
 
-/// What is known of the motion stands in the law: a force and an inertia that are even or odd turn back at -A, and a potential in
-/// closed form needs no integral.
+/// What is known of the motion stands in the law: a force and an inertia that are even or odd turn
+/// back at -A, and a potential in closed form needs no integral.
 #[test]
 fn the_energy_is_written_out_where_it_can_be() {
     for (equation, expected) in [
@@ -348,6 +383,9 @@ fn the_energy_is_written_out_where_it_can_be() {
         let (_, solution) = derived(equation, Method::Exact).expect(equation);
         let lines = solution.law.quadrature().expect(equation);
         let text: Vec<String> = lines.iter().map(ToString::to_string).collect();
-        assert!(text.iter().any(|line| line.contains(expected)), "{equation}: {text:?}");
+        assert!(
+            text.iter().any(|line| line.contains(expected)),
+            "{equation}: {text:?}"
+        );
     }
 }

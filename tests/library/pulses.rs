@@ -26,7 +26,8 @@ fn place(motion: &Trajectory, time: f64) -> f64 {
     motion.at(time).expect("a state")[0]
 }
 
-/// `x'' + 2 z x' + x = a exp(-((t - s)/w)^2)` rings behind it as `a w sqrt(pi) Im[e^(l (t - s) + (l w)^2/4)]/W`, `l = -z + i W`.
+/// `x'' + 2 z x' + x = a exp(-((t - s)/w)^2)` rings behind it as
+/// `a w sqrt(pi) Im[e^(l (t - s) + (l w)^2/4)]/W`, `l = -z + i W`.
 fn ringing(time: f64, height: f64, width: f64) -> f64 {
     let (damping, frequency) = (-0.1, (1.0 - 0.01_f64).sqrt());
     let quarter = 0.25 * width * width;
@@ -42,7 +43,10 @@ fn a_short_pulse_rings() {
         for motion in followed(&equation, 0.0, 40.0) {
             assert!(place(&motion, 12.0).abs() < 1e-12, "{equation}");
             for time in [22.5, 25.0, 31.3, 40.0] {
-                let (found, expected) = (place(&motion, time), ringing(time - 20.0, height, 1.0 / rate));
+                let (found, expected) = (
+                    place(&motion, time),
+                    ringing(time - 20.0, height, 1.0 / rate),
+                );
                 assert!(
                     (found - expected).abs() < 1e-9,
                     "{equation}, {time}: {found} {expected}"
@@ -72,7 +76,10 @@ fn the_work_of_a_steep_pulse_closes_the_account() {
                 .expect(equation)
                 .balance
                 .expect("a balance");
-            assert!(balance.residual < 1e-9, "{equation} by {integrator:?}: {balance:?}");
+            assert!(
+                balance.residual < 1e-9,
+                "{equation} by {integrator:?}: {balance:?}"
+            );
         }
     }
 }
@@ -80,18 +87,24 @@ fn the_work_of_a_steep_pulse_closes_the_account() {
 /// Two pulses of opposite sign, half a period apart, in a sum with a wave: all superposed.
 #[test]
 fn every_pulse_of_several_counts() {
-    let equation = "x'' + 0.2*x' + x = 50*exp(-((t-20)*100)^2) - 30*exp(-((t-23.1)*1000)^2) + cos(2*t)";
+    let equation =
+        "x'' + 0.2*x' + x = 50*exp(-((t-20)*100)^2) - 30*exp(-((t-23.1)*1000)^2) + cos(2*t)";
     let quiet = followed("x'' + 0.2*x' + x = cos(2*t)", 0.3, 40.0);
     for (motion, quiet) in followed(equation, 0.3, 40.0).iter().zip(&quiet) {
         for time in [25.0, 31.3, 40.0] {
-            let expected = place(quiet, time) + ringing(time - 20.0, 50.0, 1e-2) - ringing(time - 23.1, 30.0, 1e-3);
+            let expected = place(quiet, time) + ringing(time - 20.0, 50.0, 1e-2)
+                - ringing(time - 23.1, 30.0, 1e-3);
             let found = place(motion, time);
-            assert!((found - expected).abs() < 1e-9, "{time}: {found} {expected}");
+            assert!(
+                (found - expected).abs() < 1e-9,
+                "{time}: {found} {expected}"
+            );
         }
     }
 }
 
-/// `x'' = -tanh'(...)`: a speed that goes from one value to another within a hundred-thousandth, and a Lorentzian pulse with its tails.
+/// `x'' = -tanh'(...)`: a speed that goes from one value to another within a hundred-thousandth,
+/// and a Lorentzian pulse with its tails.
 #[test]
 fn a_switch_and_a_pulse_with_tails() {
     for motion in followed("x'' + tanh((t - 7.3)*1e5) = 0", 0.0, 20.0) {
@@ -105,8 +118,8 @@ fn a_switch_and_a_pulse_with_tails() {
     // The integral of (T - t)/(1 + ((t - s)/w)^2).
     for motion in followed("x'' = 1e3/(1 + ((t - 7.3)*1e3)^2)", 0.0, 20.0) {
         let (ahead, behind) = (12.7e3_f64, 7.3e3_f64);
-        let expected =
-            12.7 * (ahead.atan() + behind.atan()) - 0.5e-3 * ((1.0 + ahead * ahead) / (1.0 + behind * behind)).ln();
+        let expected = 12.7 * (ahead.atan() + behind.atan())
+            - 0.5e-3 * ((1.0 + ahead * ahead) / (1.0 + behind * behind)).ln();
         assert!(
             (place(&motion, 20.0) - expected).abs() < 1e-8,
             "{} {expected}",
@@ -115,7 +128,8 @@ fn a_switch_and_a_pulse_with_tails() {
     }
 }
 
-/// A coefficient that is there for a moment: `x'' + (1 + k delta(t - s)) x = 0` to first order in the width.
+/// A coefficient that is there for a moment: `x'' + (1 + k delta(t - s)) x = 0` to first order in
+/// the width.
 #[test]
 fn a_stiffness_for_a_moment_kicks() {
     for motion in followed("x'' + x + 1e5*exp(-((t - 20)*1e5)^2)*x = 0", 1.0, 40.0) {
@@ -142,8 +156,9 @@ fn a_short_pulse_frees_what_friction_holds() {
     }
 }
 
-/// A swing that ends at the edge of what friction holds, but for rounding, is held: it falls by 0.6 each half period of pi, until 0.3 is
-/// left. With its energy and without, for that changes the steps.
+/// A swing that ends at the edge of what friction holds, but for rounding, is held: it falls by 0.6
+/// each half period of pi, until 0.3 is left. With its energy and without, for that changes the
+/// steps.
 #[test]
 fn what_ends_at_the_edge_of_what_friction_holds_is_held() {
     let equation = Oscillator::parse("x'' + x + 0.3*sgn(x') = 0").expect("an equation");
@@ -163,7 +178,10 @@ fn what_ends_at_the_edge_of_what_friction_holds_is_held() {
                 panic!("{start}: {held:?}");
             };
             let rests = std::f64::consts::PI * f64::from(half_periods);
-            assert!((from - rests).abs() < 1e-6 && *until == 60.0, "{start}: {held:?}");
+            assert!(
+                (from - rests).abs() < 1e-6 && *until == 60.0,
+                "{start}: {held:?}"
+            );
             assert!((place(&motion, 50.0) - rests_at).abs() < 1e-9);
         }
     }

@@ -1,5 +1,6 @@
-//! Where a formula holds, beside what is known in closed form: zeros and poles of laws, wells and what lies beyond them,
-//! radii of convergence, the first amplitude at which a formula fails, and the size of what is left over.
+//! Where a formula holds, beside what is known in closed form: zeros and poles of laws, wells and
+//! what lies beyond them, radii of convergence, the first amplitude at which a formula fails, and
+//! the size of what is left over.
 
 use std::f64::consts::TAU;
 
@@ -15,7 +16,9 @@ use lindstedt::{Oscillator, Symbol};
 fn judged_by(oscillator: &Oscillator, options: &Options, at: &[(&str, &str)]) -> Verification {
     let mut values = Values::default();
     for (name, value) in at {
-        values.insert(Symbol::new(name), value.parse().unwrap()).unwrap();
+        values
+            .insert(Symbol::new(name), value.parse().unwrap())
+            .unwrap();
     }
     let solution = solve(oscillator, options).unwrap();
     judge(oscillator, &solution, &values, 0.01).unwrap()
@@ -27,10 +30,15 @@ fn judged(equation: &str, method: Method, order: Option<u32>, amplitude: &str) -
         order,
         ..Options::default()
     };
-    judged_by(&Oscillator::parse(equation).unwrap(), &options, &[("A", amplitude)])
+    judged_by(
+        &Oscillator::parse(equation).unwrap(),
+        &options,
+        &[("A", amplitude)],
+    )
 }
 
-/// A sine waves more and more often along a large motion; the balance of two harmonics is followed through all of it.
+/// A sine waves more and more often along a large motion; the balance of two harmonics is followed
+/// through all of it.
 #[test]
 fn a_balance_is_followed_through_the_waves_of_its_force() {
     let oscillator = Oscillator::parse("x'' + x + sin(x) = 0").unwrap();
@@ -41,7 +49,9 @@ fn a_balance_is_followed_through_the_waves_of_its_force() {
     };
     let solution = solve(&oscillator, &options).unwrap();
     for amplitude in [20.0, 100.0, 131.0, 179.0, 250.0, 400.0] {
-        let square = frequency_squared_of(&oscillator, &solution, &[("A".into(), amplitude)].into()).unwrap();
+        let square =
+            frequency_squared_of(&oscillator, &solution, &[("A".into(), amplitude)].into())
+                .unwrap();
         let force = |x: f64| x + x.sin();
         let waves = |from: f64, to: f64| {
             (-400..400)
@@ -49,8 +59,10 @@ fn a_balance_is_followed_through_the_waves_of_its_force() {
                 .filter(|place| from < *place && *place < to)
                 .collect()
         };
-        let truth = TAU / conservative_period(&Force::with_cuts(&force, &waves), 0.0, amplitude).unwrap();
-        // What the harmonics left out change: less than the second power of the wave over the amplitude.
+        let truth =
+            TAU / conservative_period(&Force::with_cuts(&force, &waves), 0.0, amplitude).unwrap();
+        // What the harmonics left out change: less than the second power of the wave over the
+        // amplitude.
         assert!(
             (square.sqrt() / truth - 1.0).abs() < 0.1 / amplitude.powi(2),
             "{amplitude}: {square} {truth}"
@@ -60,18 +72,26 @@ fn a_balance_is_followed_through_the_waves_of_its_force() {
 
 /// The range whose text has these words.
 fn range<'a>(verification: &'a Verification, words: &str) -> Option<&'a Range> {
-    verification.ranges.iter().find(|range| range.text.contains(words))
+    verification
+        .ranges
+        .iter()
+        .find(|range| range.text.contains(words))
 }
 
 /// The number behind the words in the text of a range.
 fn number_behind(verification: &Verification, words: &str) -> f64 {
-    let found = range(verification, words).unwrap_or_else(|| panic!("no `{words}` in {:?}", verification.ranges));
+    let found = range(verification, words)
+        .unwrap_or_else(|| panic!("no `{words}` in {:?}", verification.ranges));
     let (_, rest) = found.text.split_once(words).expect("the words");
-    let number: String = rest.chars().take_while(|letter| !": ;<".contains(*letter)).collect();
+    let number: String = rest
+        .chars()
+        .take_while(|letter| !": ;<".contains(*letter))
+        .collect();
     number.parse().unwrap_or_else(|_| panic!("{}", found.text))
 }
 
-/// The force of a planet's orbit, u_e and the place where its pull ends being the roots of 3 m u^2 - u + m/h^2.
+/// The force of a planet's orbit, u_e and the place where its pull ends being the roots of 3 m
+/// u^2 - u + m/h^2.
 #[test]
 fn the_end_of_a_well_is_named_by_the_coordinate() {
     let oscillator = Oscillator::parse("u'' + u - m/h^2 - 3*m*u^2 = 0").unwrap();
@@ -100,12 +120,16 @@ fn zero(function: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
 fn a_law_that_reaches_zero_says_where() {
     const WORDS: &str = "omega^2 of the formula reaches zero at A = ";
     // omega^2 = 1 +- 3 A^2/4 - 3 A^4/128.
-    let root = |sign: f64| ((0.75 * sign + (0.5625 + 12.0 / 128.0_f64).sqrt()) / (6.0 / 128.0)).sqrt();
+    let root =
+        |sign: f64| ((0.75 * sign + (0.5625 + 12.0 / 128.0_f64).sqrt()) / (6.0 / 128.0)).sqrt();
     for (equation, sign) in [("x'' + x + x^3 = 0", 1.0), ("x'' + x - x^3 = 0", -1.0)] {
         for (amplitude, side) in [("1/2", 1.0), ("-1/2", -1.0)] {
             let found = judged(equation, Method::LindstedtPoincare, Some(4), amplitude);
             let place = number_behind(&found, WORDS);
-            assert!((place / (side * root(sign)) - 1.0).abs() < 1e-5, "{equation}: {place}");
+            assert!(
+                (place / (side * root(sign)) - 1.0).abs() < 1e-5,
+                "{equation}: {place}"
+            );
             assert!(!range(&found, WORDS).unwrap().outside);
         }
     }
@@ -128,7 +152,8 @@ fn a_law_that_reaches_zero_says_where() {
 #[test]
 fn a_pole_of_a_law_is_no_zero() {
     const WORDS: &str = "the formula has a pole at A = ";
-    // omega^2 = 1 + c1 s + c2 s^2 with s = A^2 gives the approximant [1/1] = (1 + (c1 - c2/c1) s)/(1 - c2 s/c1).
+    // omega^2 = 1 + c1 s + c2 s^2 with s = A^2 gives the approximant [1/1] = (1 + (c1 - c2/c1)
+    // s)/(1 - c2 s/c1).
     for (cubic, quintic, amplitude, outside) in [
         ("1", "1", "1/2", false),
         ("1", "1", "-1/2", false),
@@ -136,7 +161,12 @@ fn a_pole_of_a_law_is_no_zero() {
         ("4", "1", "1", false),
         ("1/1000", "1/1000000", "10", false),
     ] {
-        let number = |text: &str| parse_expression(text).unwrap().evaluate(&Default::default()).unwrap();
+        let number = |text: &str| {
+            parse_expression(text)
+                .unwrap()
+                .evaluate(&Default::default())
+                .unwrap()
+        };
         let (c1, quintic_term) = (0.75 * number(cubic), 0.625 * number(quintic));
         let c2 = quintic_term - 3.0 / 128.0 * number(cubic).powi(2);
         let equation = format!("x'' + x + {cubic}*x^3 + {quintic}*x^5 = 0");
@@ -145,16 +175,27 @@ fn a_pole_of_a_law_is_no_zero() {
             degrees: Some(Degrees::Quotient(1, 1)),
             ..Options::default()
         };
-        let found = judged_by(&Oscillator::parse(&equation).unwrap(), &options, &[("A", amplitude)]);
+        let found = judged_by(
+            &Oscillator::parse(&equation).unwrap(),
+            &options,
+            &[("A", amplitude)],
+        );
         let expected = (c1 / c2).sqrt().copysign(number(amplitude));
         let place = number_behind(&found, WORDS);
-        assert!((place / expected - 1.0).abs() < 1e-5, "{equation}: {place} {expected}");
+        assert!(
+            (place / expected - 1.0).abs() < 1e-5,
+            "{equation}: {place} {expected}"
+        );
         assert_eq!(
             range(&found, WORDS).unwrap().outside,
             outside,
             "{equation} at {amplitude}"
         );
-        assert!(range(&found, "reaches zero").is_none(), "{:?}", found.ranges);
+        assert!(
+            range(&found, "reaches zero").is_none(),
+            "{:?}",
+            found.ranges
+        );
     }
 }
 
@@ -165,10 +206,14 @@ fn what_lies_beyond_one_well_may_be_several() {
     let wells = wells.about(parse_expression("1").unwrap());
     let options = Options::default();
     let found = |amplitude| judged_by(&wells, &options, &[("A", amplitude)]);
-    let words = "periodic for -1 < A < 0.414214: the separatrix passes the unstable equilibrium x = 0";
+    let words =
+        "periodic for -1 < A < 0.414214: the separatrix passes the unstable equilibrium x = 0";
     for inside in ["1/4", "-3/4"] {
         let found = found(inside);
-        assert_eq!(range(&found, "periodic").map(|range| range.text.as_str()), Some(words));
+        assert_eq!(
+            range(&found, "periodic").map(|range| range.text.as_str()),
+            Some(words)
+        );
     }
     for beyond in ["1/2", "1", "-3"] {
         let found = found(beyond);
@@ -197,7 +242,11 @@ fn a_force_without_end_has_no_well() {
         ("x'' + x/(1 + x^2)^2 = 0", "1"),
     ] {
         let found = judged(equation, Method::Exact, None, amplitude);
-        assert!(range(&found, "periodic").is_none(), "{equation}: {:?}", found.ranges);
+        assert!(
+            range(&found, "periodic").is_none(),
+            "{equation}: {:?}",
+            found.ranges
+        );
     }
     for (equation, amplitude, words) in [
         (
@@ -252,9 +301,15 @@ fn singularities_have_their_place_and_an_amplitude_beyond_is_outside() {
         ] {
             let found = judged(equation, Method::LindstedtPoincare, None, amplitude);
             let place = number_behind(&found, "singularity is at A^2 = ");
-            assert!((place / -radius.powi(2) - 1.0).abs() < 5e-3, "{equation}: {place}");
+            assert!(
+                (place / -radius.powi(2) - 1.0).abs() < 5e-3,
+                "{equation}: {place}"
+            );
             let estimate = number_behind(&found, "|A| < about ");
-            assert!((estimate / radius - 1.0).abs() < 5e-3, "{equation}: {estimate}");
+            assert!(
+                (estimate / radius - 1.0).abs() < 5e-3,
+                "{equation}: {estimate}"
+            );
             let range = range(&found, "the series converges").unwrap();
             assert_eq!(range.outside, outside, "{equation} at {amplitude}");
         }
@@ -267,7 +322,8 @@ fn singularities_have_their_place_and_an_amplitude_beyond_is_outside() {
 
 #[test]
 fn a_formula_fails_first_where_the_far_turning_point_meets_a_narrow_place() {
-    // At x = -1 the force all but vanishes: a motion that turns there takes its time, one that passes it does not notice.
+    // At x = -1 the force all but vanishes: a motion that turns there takes its time, one that
+    // passes it does not notice.
     let equation = "x'' + x + x^2/5 + 79/100*exp(-10000*(x + 1)^2) = 0";
     let rise = |x: f64| x * x / 2.0 + x.powi(3) / 15.0;
     // The bump is worth 0.79 sqrt(pi)/100 of energy, half of it up to its middle.
@@ -288,7 +344,14 @@ fn a_formula_fails_first_where_the_far_turning_point_meets_a_narrow_place() {
 #[test]
 fn a_range_that_ends_before_the_first_amplitude_looked_at() {
     const WORDS: &str = "within 1 % up to A = ";
-    let good = |amplitude| judged("x'' + x + x^3 = 0", Method::LindstedtPoincare, Some(2), amplitude);
+    let good = |amplitude| {
+        judged(
+            "x'' + x + x^3 = 0",
+            Method::LindstedtPoincare,
+            Some(2),
+            amplitude,
+        )
+    };
     // omega^2 = 1 + 3 A^2/4 against the exact frequency.
     let end = number_behind(&good("1/2"), WORDS);
     for amplitude in ["1000", "-1000", "20"] {
@@ -301,7 +364,11 @@ fn a_range_that_ends_before_the_first_amplitude_looked_at() {
     }
     // Off by 2.2 % at every amplitude, however small.
     let nowhere = judged("x'' + x^3 = 0", Method::EnergyBalance, None, "1");
-    assert!(range(&nowhere, "within 1 % at no amplitude").unwrap().outside);
+    assert!(
+        range(&nowhere, "within 1 % at no amplitude")
+            .unwrap()
+            .outside
+    );
 }
 
 #[test]
@@ -309,7 +376,11 @@ fn a_mirrored_force_has_the_mirrored_ranges() {
     let words = |equation: &str, amplitude: &str| {
         let found = judged(equation, Method::LindstedtPoincare, None, amplitude);
         let place = number_behind(&found, "singularity is at A = ");
-        let ends = ["|A| < about ", "reaches zero at A = ", "within 1 % up to A = "];
+        let ends = [
+            "|A| < about ",
+            "reaches zero at A = ",
+            "within 1 % up to A = ",
+        ];
         let [radius, zero, end] = ends.map(|words| number_behind(&found, words));
         (radius, [place, zero, end])
     };
@@ -324,7 +395,8 @@ fn a_mirrored_force_has_the_mirrored_ranges() {
     }
 }
 
-/// What sees of a force only its derivatives at rest says that corners lie farther out; what sees all of it need not.
+/// What sees of a force only its derivatives at rest says that corners lie farther out; what sees
+/// all of it need not.
 #[test]
 fn an_expansion_ends_at_the_first_corner() {
     let equation = "x'' + x + x^3 + 3*(x - 1)*H(x - 1) - 3*(-x - 1)*H(-x - 1) = 0";
@@ -354,9 +426,17 @@ fn an_expansion_ends_at_the_first_corner() {
 
 #[test]
 fn an_integral_by_quadrature_says_how_good_it_is() {
-    let found = judged("x'' + x + x^3/(1 + x^4) = 0", Method::Hamiltonian, None, "1");
+    let found = judged(
+        "x'' + x + x^3/(1 + x^4) = 0",
+        Method::Hamiltonian,
+        None,
+        "1",
+    );
     let range = range(&found, "the integral of the law is good to").unwrap();
-    assert!(range.text.ends_with("good to 1e-15") && !range.outside, "{range:?}");
+    assert!(
+        range.text.ends_with("good to 1e-15") && !range.outside,
+        "{range:?}"
+    );
 }
 
 #[test]
@@ -369,7 +449,10 @@ fn what_is_left_over_and_how_far_the_motion_strays() {
         let left = a.powi(3) / 4.0;
         let expected = left / (a + 3.0 * left).hypot(left);
         let residual = exact.residual.unwrap();
-        assert!((residual / expected - 1.0).abs() < 1e-9, "{residual} {expected}");
+        assert!(
+            (residual / expected - 1.0).abs() < 1e-9,
+            "{residual} {expected}"
+        );
         // The same law, so the same motion and the same numbers.
         assert!((found.residual.unwrap() / expected - 1.0).abs() < 1e-9);
     }
@@ -383,17 +466,23 @@ fn what_is_left_over_and_how_far_the_motion_strays() {
         deviation("x'' + x + x^3 = 0", "2"),
         deviation("x'' + x + x^3/1000000 = 0", "2000"),
     );
-    assert!((one / other - 1.0).abs() < 1e-6 && one > 0.01, "{one} {other}");
+    assert!(
+        (one / other - 1.0).abs() < 1e-6 && one > 0.01,
+        "{one} {other}"
+    );
 }
 
-/// Released beyond the pole so far out that its energy is lost in rounding: the motion ends at the pole all the same.
+/// Released beyond the pole so far out that its energy is lost in rounding: the motion ends at the
+/// pole all the same.
 #[test]
 fn a_pole_that_rounding_hides_ends_the_motion() {
     let oscillator = Oscillator::parse("x'' + 2.51*x/(1.07 - x)^2 + x = 0").unwrap();
     let solution = solve(&oscillator, &Options::default()).unwrap();
     for amplitude in ["7.26", "72600", "7260000", "1e9"] {
         let at = format!("A = {amplitude}").parse().unwrap();
-        let error = judge(&oscillator, &solution, &at, 0.01).unwrap_err().to_string();
+        let error = judge(&oscillator, &solution, &at, 0.01)
+            .unwrap_err()
+            .to_string();
         assert_eq!(
             error, "the motion runs into x = 1.07, where the force has no finite value",
             "A = {amplitude}"
@@ -401,7 +490,8 @@ fn a_pole_that_rounding_hides_ends_the_motion() {
     }
 }
 
-/// Thousands of waves along a motion are looked at no farther than a second's work allows; hundreds of thousands are refused.
+/// Thousands of waves along a motion are looked at no farther than a second's work allows; hundreds
+/// of thousands are refused.
 #[test]
 fn forces_that_wave_all_the_way_are_looked_at_less_far() {
     let equation = "x'' + x - 0.178*cos(x) = 0";
@@ -416,8 +506,9 @@ fn forces_that_wave_all_the_way_are_looked_at_less_far() {
     assert!(error.to_string().contains("changes too often"), "{error}");
 }
 
-/// The tail of a bump says nothing at rest of the bump itself: the exact period beside the energy, whose potential is
-/// `3.08 x^2 - (2330/100.2) exp(-50.1 (x - 1.41)^2)`, and the shared integral beside its sum.
+/// The tail of a bump says nothing at rest of the bump itself: the exact period beside the energy,
+/// whose potential is `3.08 x^2 - (2330/100.2) exp(-50.1 (x - 1.41)^2)`, and the shared integral
+/// beside its sum.
 #[test]
 fn a_bump_whose_tail_vanishes_at_rest_is_no_tail_alone() {
     const POINTS: u32 = 200_000;
@@ -445,7 +536,8 @@ fn a_bump_whose_tail_vanishes_at_rest_is_no_tail_alone() {
     assert!((found / squared.sqrt() - 1.0).abs() < 1e-12, "{found}");
 }
 
-/// A sine that waves thousands of times along the motion: a quadrature knows less of it than its closed form, which is `J1`.
+/// A sine that waves thousands of times along the motion: a quadrature knows less of it than its
+/// closed form, which is `J1`.
 #[test]
 fn a_closed_form_is_not_given_up_for_a_worse_quadrature() {
     const POINTS: u32 = 100_000;
@@ -456,13 +548,17 @@ fn a_closed_form_is_not_given_up_for_a_worse_quadrature() {
     };
     let solution = solve(&oscillator, &options).unwrap();
     let amplitude = 23_100.0;
-    let square = frequency_squared_of(&oscillator, &solution, &[("A".into(), amplitude)].into()).unwrap();
+    let square =
+        frequency_squared_of(&oscillator, &solution, &[("A".into(), amplitude)].into()).unwrap();
     let sum: f64 = (0..POINTS)
         .map(|k| (f64::from(k) + 0.5) * 0.5 * TAU / f64::from(POINTS))
         .map(|angle| 3.2 * (1.01 * amplitude * angle.cos()).sin() * angle.cos())
         .sum();
     let expected = 2.0 / (amplitude * f64::from(POINTS)) * sum;
-    assert!((square / expected - 1.0).abs() < 1e-8, "{square} {expected}");
+    assert!(
+        (square / expected - 1.0).abs() < 1e-8,
+        "{square} {expected}"
+    );
 }
 
 /// The range of a formula begins at rest, however far out the motion is that was asked for.
@@ -481,7 +577,10 @@ fn a_range_ends_where_it_ends_for_a_smaller_motion() {
     let near = end("-2");
     for amplitude in ["-10", "-606", "-100000"] {
         let far = end(amplitude);
-        assert!((far / near - 1.0).abs() < 2e-3, "A = {amplitude}: {far} {near}");
+        assert!(
+            (far / near - 1.0).abs() < 2e-3,
+            "A = {amplitude}: {far} {near}"
+        );
     }
 }
 
@@ -490,15 +589,17 @@ fn refused(equation: &str, amplitude: &str) -> String {
     let oscillator = Oscillator::parse(equation).unwrap();
     let solution = solve(&oscillator, &Options::default()).unwrap();
     let mut values = Values::default();
-    values.insert(Symbol::new("A"), amplitude.parse().unwrap()).unwrap();
+    values
+        .insert(Symbol::new("A"), amplitude.parse().unwrap())
+        .unwrap();
     match judge(&oscillator, &solution, &values, 0.01) {
         Ok(_) => panic!("{equation}: a motion from {amplitude}"),
         Err(error) => error.to_string(),
     }
 }
 
-/// Motions of an equation are periodic up to an end: at an amplitude inside the range is stated, at one outside the refusal names it.
-/// Out comes the refusal.
+/// Motions of an equation are periodic up to an end: at an amplitude inside the range is stated, at
+/// one outside the refusal names it. Out comes the refusal.
 fn is_periodic_until([equation, inside, outside, end]: [&str; 4]) -> String {
     let found = judged(equation, Method::Exact, None, inside);
     let text = range(&found, "periodic").map(|range| range.text.clone());
@@ -511,7 +612,8 @@ fn is_periodic_until([equation, inside, outside, end]: [&str; 4]) -> String {
     words
 }
 
-/// Released on the wall of a well that levels off on the other side, a motion has the energy to leave from where V is that at infinity.
+/// Released on the wall of a well that levels off on the other side, a motion has the energy to
+/// leave from where V is that at infinity.
 #[test]
 fn a_motion_must_turn_back_on_the_other_side_too() {
     for (equation, inside, outside, end) in [
@@ -549,7 +651,8 @@ fn a_motion_must_turn_back_on_the_other_side_too() {
             "-0.8",
             "A > -0.75: beyond it the motion escapes to x = infinity",
         ),
-        // V = tanh(x)^2/2 + tanh(x)/4, from -1/32 at tanh(x) = -1/4: 1/4 on the left and where tanh(x) = 1/2, 3/4 on the right.
+        // V = tanh(x)^2/2 + tanh(x)/4, from -1/32 at tanh(x) = -1/4: 1/4 on the left and where
+        // tanh(x) = 1/2, 3/4 on the right.
         (
             "x'' + (tanh(x) + 1/4)*(1 - tanh(x)^2) = 0",
             "0.7",
@@ -560,14 +663,23 @@ fn a_motion_must_turn_back_on_the_other_side_too() {
         is_periodic_until([equation, inside, outside, end]);
     }
     // log(r) + 1/r grows without end, and so does sqrt(1 + x^2).
-    let found = judged("x'' + 1/(1 + x) - 1/(1 + x)^2 = 0", Method::Exact, None, "-0.9");
+    let found = judged(
+        "x'' + 1/(1 + x) - 1/(1 + x)^2 = 0",
+        Method::Exact,
+        None,
+        "-0.9",
+    );
     let text = range(&found, "periodic").map(|range| range.text.clone());
-    assert_eq!(text.as_deref(), Some("periodic for A > -1: the force ends at x = -1"));
+    assert_eq!(
+        text.as_deref(),
+        Some("periodic for A > -1: the force ends at x = -1")
+    );
     let found = judged("x'' + x/sqrt(1 + x^2) = 0", Method::Exact, None, "30");
     assert!(range(&found, "periodic").is_none(), "{:?}", found.ranges);
 }
 
-/// `M x'^2/2 + U` with `M = exp(2 int g)`, `U' = M f` tells where motions of `x'' + g x'^2 + f = 0` are periodic.
+/// `M x'^2/2 + U` with `M = exp(2 int g)`, `U' = M f` tells where motions of `x'' + g x'^2 + f = 0`
+/// are periodic.
 #[test]
 fn inertia_that_depends_on_the_position_has_its_wells() {
     for (equation, inside, outside, end) in [
@@ -599,7 +711,8 @@ fn inertia_that_depends_on_the_position_has_its_wells() {
             "1.1",
             "|A| < 1: the force ends at x = 1",
         ),
-        // About x = 1: M = exp(2 x), U' = exp(2 x)(x^2 - 1), U = exp(2 x)(2 x^2 - 2 x - 1)/4, at x = -1 3 exp(-2)/4.
+        // About x = 1: M = exp(2 x), U' = exp(2 x)(x^2 - 1), U = exp(2 x)(2 x^2 - 2 x - 1)/4, at x
+        // = -1 3 exp(-2)/4.
         (
             "x'' + x'^2 + x^2 - 1 = 0",
             "0.3",
@@ -614,21 +727,31 @@ fn inertia_that_depends_on_the_position_has_its_wells() {
         );
     }
     let on_the_hilltop = refused("(1 + x^2)*x'' + x*x'^2 + x*(1 - x^2) = 0", "1");
-    assert!(on_the_hilltop.contains("it is on the separatrix"), "{on_the_hilltop}");
+    assert!(
+        on_the_hilltop.contains("it is on the separatrix"),
+        "{on_the_hilltop}"
+    );
     // What velocities add that has no energy is followed, and what becomes of the motion is said.
     let runs_away = refused("x'' + x + x'^2 = 0", "0.6");
-    assert!(runs_away.contains("its speed grows beyond all bounds"), "{runs_away}");
+    assert!(
+        runs_away.contains("its speed grows beyond all bounds"),
+        "{runs_away}"
+    );
 }
 
-/// Averaged to second order, `x'' + x + x'^2 = 0` has `omega = 1 - A^2/6`: it is omega that is negative, and no square.
+/// Averaged to second order, `x'' + x + x'^2 = 0` has `omega = 1 - A^2/6`: it is omega that is
+/// negative, and no square.
 #[test]
 fn a_negative_frequency_is_said_of_omega() {
     let oscillator = Oscillator::parse("x'' + x + x'^2 = 0").unwrap();
-    let table = lindstedt::verify::comparison::compare(&oscillator, &"A = -3".parse().unwrap(), None, 0.01).unwrap();
+    let table =
+        lindstedt::verify::comparison::compare(&oscillator, &"A = -3".parse().unwrap(), None, 0.01)
+            .unwrap();
     let reason = |method: Method, order: u32| {
         let mut rows = table.rows.iter();
         let row = rows.find(|row| row.solution.method == method && row.solution.order == order);
-        row.and_then(|row| row.reason.as_ref()).map(ToString::to_string)
+        row.and_then(|row| row.reason.as_ref())
+            .map(ToString::to_string)
     };
     assert_eq!(
         reason(Method::Averaging, 2).as_deref(),
@@ -638,7 +761,10 @@ fn a_negative_frequency_is_said_of_omega() {
         .rows
         .iter()
         .find(|row| row.solution.method == Method::Averaging && row.solution.order == 2);
-    let motion = solution.unwrap().solution.motion_at(&"A = -3".parse().unwrap());
+    let motion = solution
+        .unwrap()
+        .solution
+        .motion_at(&"A = -3".parse().unwrap());
     assert_eq!(motion.unwrap_err().to_string(), "not positive: omega <= 0");
     // omega^2 = 1 - A^2/3 - 4 A^3/9 - 43 A^4/72.
     assert_eq!(
@@ -647,8 +773,8 @@ fn a_negative_frequency_is_said_of_omega() {
     );
 }
 
-/// Motions that are known in closed form are judged as they are written, against Runge-Kutta; of a pendulum `sin(x/2)` is a `sn`, of `x^3` the
-/// motion a `cn`, of `x^2` a `sn^2`.
+/// Motions that are known in closed form are judged as they are written, against Runge-Kutta; of a
+/// pendulum `sin(x/2)` is a `sn`, of `x^3` the motion a `cn`, of `x^2` a `sn^2`.
 #[test]
 fn exact_motions_in_closed_form_are_the_true_ones() {
     for (equation, amplitudes, written) in [
@@ -677,7 +803,10 @@ fn exact_motions_in_closed_form_are_the_true_ones() {
         for amplitude in amplitudes {
             let found = judged(equation, Method::Exact, None, amplitude);
             let deviation = found.max_deviation.expect("a motion");
-            assert!(deviation < 1e-8, "{equation} from {amplitude}: {deviation:e}");
+            assert!(
+                deviation < 1e-8,
+                "{equation} from {amplitude}: {deviation:e}"
+            );
         }
         let oscillator = Oscillator::parse(equation).unwrap();
         let options = Options {
@@ -685,7 +814,11 @@ fn exact_motions_in_closed_form_are_the_true_ones() {
             ..Options::default()
         };
         let solution = solve(&oscillator, &options).unwrap();
-        let motion = solution.closed_motion.as_ref().expect("a motion").to_string();
+        let motion = solution
+            .closed_motion
+            .as_ref()
+            .expect("a motion")
+            .to_string();
         assert!(motion.contains(written), "{equation}: {motion}");
         // What is exported reads back.
         let document = lindstedt::export::json::solution(&solution, None);

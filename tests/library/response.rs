@@ -1,4 +1,5 @@
-//! Steady states against what is known of them otherwise: closed forms, simulation by Taylor series, Liouville's theorem.
+//! Steady states against what is known of them otherwise: closed forms, simulation by Taylor
+//! series, Liouville's theorem.
 
 use lindstedt::response::bifurcation::BifurcationKind;
 use lindstedt::response::continuation::BranchEnd;
@@ -23,11 +24,15 @@ fn duffing() -> Response {
 }
 
 fn places(response: &Response, kind: BifurcationKind) -> Vec<Bifurcation> {
-    let of_kind = response.bifurcations.iter().filter(|found| found.kind == kind);
+    let of_kind = response
+        .bifurcations
+        .iter()
+        .filter(|found| found.kind == kind);
     of_kind.copied().collect()
 }
 
-/// The points of all branches nearest to a value of the parameter, one for each time that a branch passes it.
+/// The points of all branches nearest to a value of the parameter, one for each time that a branch
+/// passes it.
 fn passing(response: &Response, parameter: f64) -> Vec<Point> {
     let mut found = Vec::new();
     for branch in &response.branches {
@@ -45,8 +50,9 @@ fn passing(response: &Response, parameter: f64) -> Vec<Point> {
     found
 }
 
-/// The equation by its Taylor series, or piece by piece, which shares nothing with the balance: position and velocity after so many periods, and the
-/// amplitude of the first harmonic and half of peak to peak of the last one.
+/// The equation by its Taylor series, or piece by piece, which shares nothing with the balance:
+/// position and velocity after so many periods, and the amplitude of the first harmonic and half of
+/// peak to peak of the last one.
 fn simulated(
     equation: &str,
     numbers: &[(&str, f64)],
@@ -72,7 +78,10 @@ fn simulated(
         .collect();
     let sum = |wave: fn(f64) -> f64| {
         let phase = |index: usize| std::f64::consts::TAU * index as f64 / f64::from(SAMPLES);
-        let terms = positions.iter().enumerate().map(|(index, x)| x * wave(phase(index)));
+        let terms = positions
+            .iter()
+            .enumerate()
+            .map(|(index, x)| x * wave(phase(index)));
         terms.sum::<f64>() * 2.0 / f64::from(SAMPLES)
     };
     let highest = positions.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -95,7 +104,11 @@ fn a_linear_oscillator_is_exact() {
         "c = 1/5, F = 7/10",
     );
     assert_eq!(
-        (found.branches.len(), found.bifurcations.len(), found.verdict),
+        (
+            found.branches.len(),
+            found.bifurcations.len(),
+            found.verdict
+        ),
         (1, 0, Verdict::Pass)
     );
     for point in &found.branches[0].points {
@@ -104,19 +117,29 @@ fn a_linear_oscillator_is_exact() {
         let amplitude = force / stiffness.hypot(c * omega);
         let phase = (c * omega).atan2(stiffness) + std::f64::consts::FRAC_PI_2;
         let turned = (point.phase - phase).sin();
-        assert!((point.amplitude / amplitude - 1.0).abs() < 1e-9, "{point:?}");
-        assert!(turned.abs() < 1e-9 && (point.phase - phase).cos() > 0.0, "{point:?}");
+        assert!(
+            (point.amplitude / amplitude - 1.0).abs() < 1e-9,
+            "{point:?}"
+        );
+        assert!(
+            turned.abs() < 1e-9 && (point.phase - phase).cos() > 0.0,
+            "{point:?}"
+        );
         assert!((point.peak / amplitude - 1.0).abs() < 1e-4 && point.stable == Some(true));
         let [one, other] = point.multipliers.expect("multipliers");
         let decay = (-c * std::f64::consts::TAU / omega).exp();
         assert!(((one * other).re / decay - 1.0).abs() < 1e-7, "{point:?}");
     }
     let curve = &found.backbone[0];
-    assert!(curve.iter().all(|point| (point.parameter - 1.0).abs() < 1e-9));
+    assert!(
+        curve
+            .iter()
+            .all(|point| (point.parameter - 1.0).abs() < 1e-9)
+    );
 }
 
-/// With one harmonic: `s ((1 - Omega^2 + 3 s/4)^2 + (c Omega)^2) = F^2` with s the square of the amplitude, and at a fold its
-/// derivative by s is zero.
+/// With one harmonic: `s ((1 - Omega^2 + 3 s/4)^2 + (c Omega)^2) = F^2` with s the square of the
+/// amplitude, and at a fold its derivative by s is zero.
 #[test]
 fn folds_of_one_harmonic_are_those_of_the_closed_form() {
     let found = respond(&Question {
@@ -144,7 +167,8 @@ fn folds_of_one_harmonic_are_those_of_the_closed_form() {
     }
 }
 
-/// A linear oscillator has one motion; what of the beginning has not died out is none. A hard spring has motions of three periods there.
+/// A linear oscillator has one motion; what of the beginning has not died out is none. A hard
+/// spring has motions of three periods there.
 #[test]
 fn what_dies_out_slowly_is_no_motion_of_its_own() {
     for (equation, range) in [
@@ -153,10 +177,23 @@ fn what_dies_out_slowly_is_no_motion_of_its_own() {
         ("x'' + x'/50 + x + x^3/10 = cos(Omega*t)/10", [1.3, 1.4]),
     ] {
         let found = response(equation, "Omega", range, "");
-        assert!(found.elsewhere.is_empty(), "{equation}: {:?}", found.elsewhere);
+        assert!(
+            found.elsewhere.is_empty(),
+            "{equation}: {:?}",
+            found.elsewhere
+        );
     }
-    let found = response("x'' + x'/10 + x^3 = 3*cos(Omega*t)/10", "Omega", [1.0, 1.4], "");
-    let periods: Vec<_> = found.elsewhere.iter().map(|elsewhere| elsewhere.periods).collect();
+    let found = response(
+        "x'' + x'/10 + x^3 = 3*cos(Omega*t)/10",
+        "Omega",
+        [1.0, 1.4],
+        "",
+    );
+    let periods: Vec<_> = found
+        .elsewhere
+        .iter()
+        .map(|elsewhere| elsewhere.periods)
+        .collect();
     assert!(
         !periods.is_empty() && periods.iter().all(|periods| *periods == Some(3)),
         "{:?}",
@@ -164,8 +201,9 @@ fn what_dies_out_slowly_is_no_motion_of_its_own() {
     );
 }
 
-/// Where the range begins between the folds, or ends there, all three motions are found: as many as `s ((1 - Omega^2 + 3 k s/4)^2 + (c Omega)^2) = F^2`
-/// has roots. Neither rest nor a simulation need lead to the resonant ones.
+/// Where the range begins between the folds, or ends there, all three motions are found: as many as
+/// `s ((1 - Omega^2 + 3 k s/4)^2 + (c Omega)^2) = F^2` has roots. Neither rest nor a simulation
+/// need lead to the resonant ones.
 #[test]
 fn a_narrow_range_has_every_motion_of_its_inside() {
     let equation = "x'' + c*x' + x + k*x^3 - F*cos(Omega*t) = 0";
@@ -199,7 +237,11 @@ fn a_narrow_range_has_every_motion_of_its_inside() {
 fn both_stable_motions_are_where_a_simulation_settles() {
     let found = duffing();
     assert_eq!((found.verdict, found.unjudged), (Verdict::Pass, 0));
-    assert!(found.error.is_some_and(|error| error < 1e-5), "{:?}", found.error);
+    assert!(
+        found.error.is_some_and(|error| error < 1e-5),
+        "{:?}",
+        found.error
+    );
     for (parameter, expected) in [(0.7, 1), (1.5, 3), (2.2, 1)] {
         let motions = passing(&found, parameter);
         assert_eq!(motions.len(), expected, "{parameter}");
@@ -216,7 +258,10 @@ fn both_stable_motions_are_where_a_simulation_settles() {
             assert!((point.peak / peak - 1.0).abs() < 1e-4, "{point:?}: {peak}");
         }
         assert_eq!(
-            motions.iter().filter(|point| point.stable == Some(false)).count(),
+            motions
+                .iter()
+                .filter(|point| point.stable == Some(false))
+                .count(),
             expected / 2
         );
     }
@@ -244,7 +289,14 @@ fn a_simulation_jumps_at_the_folds() {
         let after = |offset: f64| {
             let parameter = fold.parameter * (1.0 + 0.004 * offset * step);
             let numbers = [("c", 0.1), ("F", 0.3), ("Omega", parameter)];
-            simulated(DUFFING, &numbers, point.start, std::f64::consts::TAU / parameter, 150).1
+            simulated(
+                DUFFING,
+                &numbers,
+                point.start,
+                std::f64::consts::TAU / parameter,
+                150,
+            )
+            .1
         };
         let (before, beyond) = (after(-1.0), after(1.0));
         assert_eq!(before > 1.0, high, "{fold:?}: {before}");
@@ -269,7 +321,11 @@ fn beyond_a_period_doubling_a_simulation_takes_two_periods() {
     let wells = "x'' + x'/4 - x + x^3 - F*cos(Omega*t) = 0";
     let found = response(wells, "F", [0.05, 0.2], "Omega = 1");
     assert_eq!(found.verdict, Verdict::Pass);
-    let mirrored: Vec<bool> = found.branches.iter().map(|branch| branch.mirrored).collect();
+    let mirrored: Vec<bool> = found
+        .branches
+        .iter()
+        .map(|branch| branch.mirrored)
+        .collect();
     assert_eq!(
         mirrored,
         [true, false, true],
@@ -280,7 +336,8 @@ fn beyond_a_period_doubling_a_simulation_takes_two_periods() {
         panic!("{doublings:?}")
     };
     let beside = |offset: f64| {
-        let distance = |point: &Point| (point.parameter - doubling.parameter * (1.0 + offset)).abs();
+        let distance =
+            |point: &Point| (point.parameter - doubling.parameter * (1.0 + offset)).abs();
         let on = found.branches[doubling.branch].points.iter();
         let upper = on.filter(|point| point.amplitude > 0.5);
         upper
@@ -331,7 +388,8 @@ fn beyond_a_period_doubling_a_simulation_takes_two_periods() {
     );
 }
 
-/// By Liouville's theorem the determinant of M is 1 where the mean of the damping is zero: the mean of x^2 is 1 there.
+/// By Liouville's theorem the determinant of M is 1 where the mean of the damping is zero: the mean
+/// of x^2 is 1 there.
 #[test]
 fn a_locked_oscillator_unlocks_where_its_mean_damping_vanishes() {
     let van_der_pol = "x'' - mu*(1 - x^2)*x' + x - F*cos(Omega*t) = 0";
@@ -347,9 +405,14 @@ fn a_locked_oscillator_unlocks_where_its_mean_damping_vanishes() {
             again.len() == 1 && (again[0].parameter - place.parameter).abs() < 1e-6,
             "{again:?}"
         );
-        let passes =
-            |pair: &&[Point]| (pair[0].parameter - place.parameter) * (pair[1].parameter - place.parameter) <= 0.0;
-        let pair = closely.branches[0].points.windows(2).find(passes).expect("two points");
+        let passes = |pair: &&[Point]| {
+            (pair[0].parameter - place.parameter) * (pair[1].parameter - place.parameter) <= 0.0
+        };
+        let pair = closely.branches[0]
+            .points
+            .windows(2)
+            .find(passes)
+            .expect("two points");
         let mean_damping = |point: &Point| {
             let squares = point
                 .harmonics
@@ -362,7 +425,10 @@ fn a_locked_oscillator_unlocks_where_its_mean_damping_vanishes() {
         let [before, after] = [mean_damping(&pair[0]), mean_damping(&pair[1])];
         let part = (place.parameter - pair[0].parameter) / (pair[1].parameter - pair[0].parameter);
         let there = before + part * (after - before);
-        assert!(before * after < 0.0 && there.abs() < 1e-5, "{before} {after}: {there}");
+        assert!(
+            before * after < 0.0 && there.abs() < 1e-5,
+            "{before} {after}: {there}"
+        );
     }
     // Outside it never repeats itself.
     assert!(
@@ -377,7 +443,13 @@ fn a_locked_oscillator_unlocks_where_its_mean_damping_vanishes() {
 fn a_contact_bends_the_resonance() {
     let stop = "x'' + x'/10 + x + k*(x - 1/2)^(3/2)*H(x - 1/2) - F*cos(Omega*t) = 0";
     let found = response(stop, "Omega", [0.7, 1.8], "k = 20, F = 1/10");
-    assert_eq!(found.verdict, Verdict::Pass, "{:?} {}", found.error, found.unjudged);
+    assert_eq!(
+        found.verdict,
+        Verdict::Pass,
+        "{:?} {}",
+        found.error,
+        found.unjudged
+    );
     assert_eq!(
         places(&found, BifurcationKind::Fold).len(),
         2,
@@ -402,7 +474,8 @@ fn a_contact_bends_the_resonance() {
     }
 }
 
-/// Motions of a third of the frequency are a closed branch, or one that never touches that of the main resonance.
+/// Motions of a third of the frequency are a closed branch, or one that never touches that of the
+/// main resonance.
 #[test]
 fn subharmonic_motions_are_found_apart() {
     let cubic = "x'' + x'/20 + x + x^3/10 - F*cos(Omega*t) = 0";
@@ -442,9 +515,16 @@ fn the_backbone_is_the_law_of_the_free_motion() {
     let free = Oscillator::parse("x'' + x + eps*x^3 = 0").expect("an equation");
     let law = solve(&free, &options).expect("a law");
     let mut seen = 0;
-    for point in found.backbone[0].iter().filter(|point| point.amplitude < 0.5) {
-        let at = format!("eps = 1, a = {}", point.amplitude).parse().expect("values");
-        let frequency = lindstedt::judge(&free, &law, &at, 0.01).expect("a verdict").frequency;
+    for point in found.backbone[0]
+        .iter()
+        .filter(|point| point.amplitude < 0.5)
+    {
+        let at = format!("eps = 1, a = {}", point.amplitude)
+            .parse()
+            .expect("values");
+        let frequency = lindstedt::judge(&free, &law, &at, 0.01)
+            .expect("a verdict")
+            .frequency;
         let frequency = frequency.expect("a frequency");
         assert!(
             (point.parameter / frequency - 1.0).abs() < 1e-5,
@@ -464,7 +544,12 @@ fn the_backbone_is_the_law_of_the_free_motion() {
 
 #[test]
 fn without_damping_a_linear_resonance_is_unbounded() {
-    let found = response("x'' + x - F*cos(Omega*t) = 0", "Omega", [0.6, 1.5], "F = 1/10");
+    let found = response(
+        "x'' + x - F*cos(Omega*t) = 0",
+        "Omega",
+        [0.6, 1.5],
+        "F = 1/10",
+    );
     let unbounded = found
         .branches
         .iter()
@@ -473,9 +558,13 @@ fn without_damping_a_linear_resonance_is_unbounded() {
     assert_eq!((found.branches.len(), unbounded.count()), (2, 2));
     for point in found.branches.iter().flat_map(|branch| &branch.points) {
         let amplitude = 0.1 / (1.0 - point.parameter.powi(2)).abs();
-        assert!((point.amplitude / amplitude - 1.0).abs() < 1e-6, "{point:?}");
+        assert!(
+            (point.amplitude / amplitude - 1.0).abs() < 1e-6,
+            "{point:?}"
+        );
     }
-    // With its resonance in the middle, and where twice the frequency is that of the free motion; nothing twice, nothing missing.
+    // With its resonance in the middle, and where twice the frequency is that of the free motion;
+    // nothing twice, nothing missing.
     for (range, drive) in [([0.5, 1.5], 0.1), ([0.4, 1.6], 0.1), ([0.5, 1.5], 0.3)] {
         let values = format!("F = {drive}");
         let found = response("x'' + x - F*cos(Omega*t) = 0", "Omega", range, &values);
@@ -484,16 +573,27 @@ fn without_damping_a_linear_resonance_is_unbounded() {
         for branch in &found.branches {
             for point in &branch.points {
                 let amplitude = drive / (1.0 - point.parameter.powi(2)).abs();
-                assert!((point.amplitude / amplitude - 1.0).abs() < 1e-6, "{point:?}");
+                assert!(
+                    (point.amplitude / amplitude - 1.0).abs() < 1e-6,
+                    "{point:?}"
+                );
             }
-            ends.extend([branch.points.first(), branch.points.last()].map(|point| point.expect("a point").parameter));
+            ends.extend(
+                [branch.points.first(), branch.points.last()]
+                    .map(|point| point.expect("a point").parameter),
+            );
         }
         ends.sort_by(f64::total_cmp);
         for (end, place) in ends.into_iter().zip([range[0], 1.0, 1.0, range[1]]) {
             assert!((end - place).abs() < 2e-4, "{range:?}: {end}");
         }
     }
-    let refused = respond(&question("x'' + x - F*cos(Omega*t) = 0", "F", [0.1, 1.0], "Omega = 1"));
+    let refused = respond(&question(
+        "x'' + x - F*cos(Omega*t) = 0",
+        "F",
+        [0.1, 1.0],
+        "Omega = 1",
+    ));
     let message = refused.expect_err("no motion").to_string();
     assert!(message.contains("unbounded at resonance"), "{message}");
 }
@@ -510,7 +610,13 @@ fn what_cannot_be_answered_is_refused_by_name() {
             "`-exp(-t)` is not periodic",
         ),
         (DUFFING, "Omega", [0.5, 1.5], "c = 1/10", "no value for `F`"),
-        (DUFFING, "omega", [0.5, 1.5], "c = 1/10, F = 1", "no parameter `omega`"),
+        (
+            DUFFING,
+            "omega",
+            [0.5, 1.5],
+            "c = 1/10, F = 1",
+            "no parameter `omega`",
+        ),
         (
             DUFFING,
             "Omega",
@@ -525,7 +631,13 @@ fn what_cannot_be_answered_is_refused_by_name() {
             "c = 1/10, F = 1, Omega = 2",
             "varies and is given",
         ),
-        (DUFFING, "Omega", [1.5, 0.5], "c = 1/10, F = 1", "must go from"),
+        (
+            DUFFING,
+            "Omega",
+            [1.5, 0.5],
+            "c = 1/10, F = 1",
+            "must go from",
+        ),
         (
             DUFFING,
             "Omega",
@@ -533,7 +645,13 @@ fn what_cannot_be_answered_is_refused_by_name() {
             "c = 1/10, F = 1",
             "must go from",
         ),
-        (DUFFING, "Omega", [-0.5, 0.5], "c = 1/10, F = 1", "must be positive"),
+        (
+            DUFFING,
+            "Omega",
+            [-0.5, 0.5],
+            "c = 1/10, F = 1",
+            "must be positive",
+        ),
         (
             "x'' + x'/9 + x - cos(t) - cos(Omega*t) = 0",
             "Omega",
@@ -557,13 +675,17 @@ fn what_cannot_be_answered_is_refused_by_name() {
     }
 }
 
-/// The table of `docs/response.md` is what is computed: both folds and the largest error by the number of harmonics.
+/// The table of `docs/response.md` is what is computed: both folds and the largest error by the
+/// number of harmonics.
 #[test]
 fn the_page_says_how_many_harmonics_are_enough() {
     let page = include_str!("../../docs/response.md");
     let mut rows = 0;
     for line in page.lines() {
-        let cells: Vec<f64> = line.split('|').filter_map(|cell| cell.trim().parse().ok()).collect();
+        let cells: Vec<f64> = line
+            .split('|')
+            .filter_map(|cell| cell.trim().parse().ok())
+            .collect();
         let [harmonics, down, up, error] = cells[..] else {
             continue;
         };
@@ -572,7 +694,11 @@ fn the_page_says_how_many_harmonics_are_enough() {
             ..question(DUFFING, "Omega", [0.5, 2.0], "c = 1/10, F = 3/10")
         })
         .expect("a response");
-        let folds: Vec<f64> = found.bifurcations.iter().map(|found| found.parameter).collect();
+        let folds: Vec<f64> = found
+            .bifurcations
+            .iter()
+            .map(|found| found.parameter)
+            .collect();
         assert!(
             folds.len() == 2 && (folds[0] - down).abs() < 6e-6 && (folds[1] - up).abs() < 6e-6,
             "{line}: {folds:?}"
@@ -584,14 +710,16 @@ fn the_page_says_how_many_harmonics_are_enough() {
     assert_eq!(rows, 5);
 }
 
-/// The steady motions of multiple scales beside the branches: their error falls with everything small, by the order that is kept.
+/// The steady motions of multiple scales beside the branches: their error falls with everything
+/// small, by the order that is kept.
 #[test]
 fn slow_equations_come_nearer_with_their_order() {
     let error = |order: u32, d: u32| {
         let equation = "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)";
         let values = format!("zeta = 1/{d}, eps = 1/{d}, F = 1/{d}");
         let width = 3.0 / f64::from(d);
-        let question = Question::new(equation, "Omega", [1.0 - width, 1.0 + width], &values).expect("a question");
+        let question = Question::new(equation, "Omega", [1.0 - width, 1.0 + width], &values)
+            .expect("a question");
         let options = lindstedt::Options {
             method: Some(lindstedt::Method::MultipleScales),
             order: Some(order),
@@ -611,11 +739,15 @@ fn slow_equations_come_nearer_with_their_order() {
     for (order, least) in [(1, 0.7), (2, 1.6), (3, 2.5)] {
         let (large, small) = (error(order, 20), error(order, 40));
         let slope = (large / small).log2();
-        assert!(slope > least, "order {order}: {large} and {small}, slope {slope}");
+        assert!(
+            slope > least,
+            "order {order}: {large} and {small}, slope {slope}"
+        );
     }
 }
 
-/// What jumps with the velocity on no line of places and velocities is refused by name; what has no jump is not, nor are several lines.
+/// What jumps with the velocity on no line of places and velocities is refused by name; what has no
+/// jump is not, nor are several lines.
 #[test]
 fn forces_that_jump_on_no_line_are_refused() {
     let ask = |force: &str| {
@@ -624,14 +756,20 @@ fn forces_that_jump_on_no_line_are_refused() {
     };
     for force in ["H(x'^2 - 1)*x", "sgn(x' - cos(Omega*t))"] {
         let error = ask(force).expect_err(force).to_string();
-        assert!(error.contains("jumps with the velocity"), "{force}: {error}");
+        assert!(
+            error.contains("jumps with the velocity"),
+            "{force}: {error}"
+        );
     }
     assert!(ask("x'^2*sgn(x')/20").is_ok_and(|found| !found.by_map));
-    assert!(ask("(sgn(x') + sgn(x' - 1))/20").is_ok_and(|found| found.by_map && found.unjudged == 0));
+    assert!(
+        ask("(sgn(x') + sgn(x' - 1))/20").is_ok_and(|found| found.by_map && found.unjudged == 0)
+    );
 }
 
-/// A pendulum that has gone over the top swings as before, a turn away: that is no other branch. Without the turns there are two ways to
-/// swing below the jump, the small and the large, on branches that do not meet above.
+/// A pendulum that has gone over the top swings as before, a turn away: that is no other branch.
+/// Without the turns there are two ways to swing below the jump, the small and the large, on
+/// branches that do not meet above.
 #[test]
 fn a_turn_of_a_pendulum_away_is_the_same_branch() {
     let found = response(

@@ -1,10 +1,12 @@
-//! The same series and the same elimination of secular terms over rings that this crate does not have: residues modulo a prime
-//! chosen at run time, and intervals.
+//! The same series and the same elimination of secular terms over rings that this crate does not
+//! have: residues modulo a prime chosen at run time, and intervals.
 
 use lindstedt::exact::Indivisible;
 use lindstedt::exact::Monomial;
 use lindstedt::exact::{Integer, Integers, Polynomial, Polynomials, Rational, Ring, from_f64};
-use lindstedt::method::secular::{Amplitude, Detuning, Expansion, ForceTerm, Scheme, SecularError, expand};
+use lindstedt::method::secular::{
+    Amplitude, Detuning, Expansion, ForceTerm, Scheme, SecularError, expand,
+};
 use lindstedt::series::FourierSeries;
 use lindstedt::solution::AmplitudeConvention;
 use num_integer::Integer as _;
@@ -12,7 +14,8 @@ use num_traits::{One, ToPrimitive, Zero};
 
 /// The field of residues modulo a prime below 2^63.
 ///
-/// The element 0 is zero itself; a multiple of the prime that came out of a computation is the prime.
+/// The element 0 is zero itself; a multiple of the prime that came out of a computation is the
+/// prime.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Residues {
     prime: u64,
@@ -30,7 +33,12 @@ impl Residues {
     fn image(self, value: &Integer) -> u64 {
         match value.is_zero() {
             true => 0,
-            false => self.element(value.mod_floor(&self.prime.into()).to_u128().expect("a residue")),
+            false => self.element(
+                value
+                    .mod_floor(&self.prime.into())
+                    .to_u128()
+                    .expect("a residue"),
+            ),
         }
     }
 
@@ -104,10 +112,12 @@ impl Ring for Residues {
         elements: impl IntoIterator<Item = &'a mut u64>,
         divisor: &Integer,
     ) -> Result<(), Indivisible> {
-        let inverse = self.reciprocal(self.image(divisor)).ok_or_else(|| Indivisible {
-            divisor: divisor.clone(),
-            ring: format!("the residues modulo {}", self.prime),
-        })?;
+        let inverse = self
+            .reciprocal(self.image(divisor))
+            .ok_or_else(|| Indivisible {
+                divisor: divisor.clone(),
+                ring: format!("the residues modulo {}", self.prime),
+            })?;
         for element in elements {
             *element = self.product(element, &inverse);
         }
@@ -118,7 +128,13 @@ impl Ring for Residues {
     }
 }
 
-fn term<R: Ring>(ring: &R, order: usize, powers: [u32; 2], numerator: i64, denominator: i64) -> ForceTerm<R> {
+fn term<R: Ring>(
+    ring: &R,
+    order: usize,
+    powers: [u32; 2],
+    numerator: i64,
+    denominator: i64,
+) -> ForceTerm<R> {
     ForceTerm {
         order,
         position: powers[0],
@@ -178,7 +194,8 @@ fn parts<R: Ring>(expansion: &Expansion<R>) -> Vec<(String, FourierSeries<R>)> {
     parts
 }
 
-/// Every coefficient of an exact expansion beside the one in another ring, and how many of the exact ones are not zero.
+/// Every coefficient of an exact expansion beside the one in another ring, and how many of the
+/// exact ones are not zero.
 fn compare<R: Ring, S: Ring>(
     exact: &Expansion<R>,
     other: &Expansion<S>,
@@ -189,7 +206,10 @@ fn compare<R: Ring, S: Ring>(
     let mut count = 0;
     for ((name, left), (_, right)) in exact.iter().zip(&other) {
         for k in 0..=left.highest_harmonic().max(right.highest_harmonic()) {
-            for (left, right) in [(left.cosine(k), right.cosine(k)), (left.sine(k), right.sine(k))] {
+            for (left, right) in [
+                (left.cosine(k), right.cosine(k)),
+                (left.sine(k), right.sine(k)),
+            ] {
                 let (numerator, denominator) = left.mean();
                 let (found, one) = right.mean();
                 assert!(one.is_one(), "{name}, harmonic {k}: a denominator is left");
@@ -205,12 +225,18 @@ fn compare<R: Ring, S: Ring>(
 }
 
 fn agrees(ring: Residues) -> impl Fn(&Integer, &Integer, &u64) -> bool {
-    move |numerator, denominator, found| ring.fraction(numerator, denominator) % ring.prime == found % ring.prime
+    move |numerator, denominator, found| {
+        ring.fraction(numerator, denominator) % ring.prime == found % ring.prime
+    }
 }
 
 /// The largest primes below 2^31 and 2^61 and one between them, found when the test runs.
 fn primes() -> Vec<u64> {
-    let is_prime = |n: u64| (2..).take_while(|d| d * d <= n).all(|d| !n.is_multiple_of(d));
+    let is_prime = |n: u64| {
+        (2..)
+            .take_while(|d| d * d <= n)
+            .all(|d| !n.is_multiple_of(d))
+    };
     let below = |limit: u64| (1..limit).rev().find(|&n| is_prime(n)).expect("a prime");
     // Mersenne's, whose trial division would take long.
     vec![below(1 << 31), below(1 << 36), (1 << 61) - 1]
@@ -230,17 +256,22 @@ fn duffing_to_order_20_modulo_primes() {
 
 #[test]
 fn limit_cycles_and_homotopies_modulo_primes() {
-    let normalisations = [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic];
+    let normalisations = [
+        AmplitudeConvention::Initial,
+        AmplitudeConvention::FirstHarmonic,
+    ];
     for prime in primes() {
         let ring = Residues { prime };
         for normalisation in normalisations {
             let cycle = scheme(normalisation, Amplitude::Determined, Detuning::Acceleration);
-            let exact = expand(&Integers, &van_der_pol(&Integers), 10, &cycle).expect("a limit cycle");
+            let exact =
+                expand(&Integers, &van_der_pol(&Integers), 10, &cycle).expect("a limit cycle");
             let found = expand(&ring, &van_der_pol(&ring), 10, &cycle).expect("a good prime");
             assert!(compare(&exact, &found, agrees(ring)) > 100);
 
             let homotopy = scheme(normalisation, Amplitude::Free, Detuning::Displacement);
-            let both = |terms: fn(&Integers) -> ForceTerm<Integers>, modulo: fn(&Residues) -> ForceTerm<Residues>| {
+            let both = |terms: fn(&Integers) -> ForceTerm<Integers>,
+                        modulo: fn(&Residues) -> ForceTerm<Residues>| {
                 (vec![terms(&Integers)], vec![modulo(&ring)])
             };
             let (whole, modulo) = both(|r| term(r, 1, [2, 2], 5, 7), |r| term(r, 1, [2, 2], 5, 7));
@@ -284,22 +315,37 @@ fn symbols_modulo_a_prime() {
     assert!(compare(&exact, &found, agree) > 30);
 }
 
-/// Order n of Duffing's motion divides by `1 - (2 n + 1)^2 = -4 n (n + 1)`: a prime p fails at order p - 1 and not before.
+/// Order n of Duffing's motion divides by `1 - (2 n + 1)^2 = -4 n (n + 1)`: a prime p fails at
+/// order p - 1 and not before.
 #[test]
 fn a_prime_that_divides_a_denominator_is_an_error() {
     for (prime, fails_at) in [(2, 1), (3, 2), (5, 4), (7, 6), (11, 10)] {
         let ring = Residues { prime };
-        let before = expand(&ring, &duffing(&ring), fails_at - 1, &LINDSTEDT_POINCARE).expect("no bad divisor yet");
-        let exact = expand(&Integers, &duffing(&Integers), fails_at - 1, &LINDSTEDT_POINCARE).expect("periodic");
+        let before = expand(&ring, &duffing(&ring), fails_at - 1, &LINDSTEDT_POINCARE)
+            .expect("no bad divisor yet");
+        let exact = expand(
+            &Integers,
+            &duffing(&Integers),
+            fails_at - 1,
+            &LINDSTEDT_POINCARE,
+        )
+        .expect("periodic");
         compare(&exact, &before, agrees(ring));
-        let error = expand(&ring, &duffing(&ring), 20, &LINDSTEDT_POINCARE).expect_err("a bad prime");
+        let error =
+            expand(&ring, &duffing(&ring), 20, &LINDSTEDT_POINCARE).expect_err("a bad prime");
         let SecularError::Indivisible { order, indivisible } = &error else {
             panic!("{prime}: {error}");
         };
         assert_eq!(*order, fails_at, "{prime}");
-        assert!(indivisible.divisor.is_multiple_of(&prime.into()), "{prime}: {error}");
+        assert!(
+            indivisible.divisor.is_multiple_of(&prime.into()),
+            "{prime}: {error}"
+        );
         let text = error.to_string();
-        assert!(text.contains(&format!("the residues modulo {prime},")), "{text}");
+        assert!(
+            text.contains(&format!("the residues modulo {prime},")),
+            "{text}"
+        );
         assert!(text.contains(&indivisible.divisor.to_string()), "{text}");
     }
     let error = expand(
@@ -325,7 +371,10 @@ fn a_coefficient_without_residue_is_an_error() {
     let refused = force[0].coefficient.divided().expect_err("no inverse");
     assert_eq!(refused.divisor, Integer::from(2 * 1_000_003));
     let error = expand(&ring, &force, 2, &LINDSTEDT_POINCARE).expect_err("no inverse");
-    assert!(matches!(error, SecularError::Indivisible { order: 1, .. }), "{error}");
+    assert!(
+        matches!(error, SecularError::Indivisible { order: 1, .. }),
+        "{error}"
+    );
 }
 
 /// Closed intervals with endpoints in double precision, every operation rounded outward.
@@ -343,7 +392,10 @@ fn outward(ends: impl IntoIterator<Item = f64>) -> Interval {
 }
 
 fn enclosing(value: &Integer) -> Interval {
-    match value.to_i64().filter(|small| small.unsigned_abs() < 1 << 53) {
+    match value
+        .to_i64()
+        .filter(|small| small.unsigned_abs() < 1 << 53)
+    {
         Some(small) => [small as f64; 2],
         None => outward([value.to_f64().expect("a number of this size")]),
     }
@@ -376,7 +428,10 @@ impl Ring for Intervals {
     fn accumulate(&self, sum: &mut Interval, term: &Interval) {
         *sum = match (*sum, *term) {
             (ZERO, only) | (only, ZERO) => only,
-            (left, right) => [(left[0] + right[0]).next_down(), (left[1] + right[1]).next_up()],
+            (left, right) => [
+                (left[0] + right[0]).next_down(),
+                (left[1] + right[1]).next_up(),
+            ],
         };
     }
     fn negate(&self, element: &mut Interval) {
@@ -410,13 +465,22 @@ impl Ring for Intervals {
         for element in elements {
             if *element != ZERO {
                 let [lower, upper] = *element;
-                *element = outward(divisor.iter().flat_map(|divisor| [lower / divisor, upper / divisor]));
+                *element = outward(
+                    divisor
+                        .iter()
+                        .flat_map(|divisor| [lower / divisor, upper / divisor]),
+                );
             }
         }
         Ok(())
     }
     fn inverse(&self, element: &Interval) -> Option<(Interval, Integer)> {
-        (!self.may_be_zero(element)).then(|| (outward([1.0 / element[0], 1.0 / element[1]]), Integer::one()))
+        (!self.may_be_zero(element)).then(|| {
+            (
+                outward([1.0 / element[0], 1.0 / element[1]]),
+                Integer::one(),
+            )
+        })
     }
 }
 
@@ -440,7 +504,8 @@ fn intervals_enclose_the_exact_coefficients() {
     assert!(compare(&exact, &found, enclosed) > 50);
 }
 
-/// A coefficient of which only a bound is known: every value within is covered, and no harmonic is dropped for containing zero.
+/// A coefficient of which only a bound is known: every value within is covered, and no harmonic is
+/// dropped for containing zero.
 #[test]
 fn an_interval_around_zero_is_not_zero() {
     let uncertain = |order, powers, bound| ForceTerm {
@@ -461,20 +526,39 @@ fn an_interval_around_zero_is_not_zero() {
         let force = [term(&Integers, 1, [3, 0], numerator, denominator)];
         let exact = expand(&Integers, &force, 4, &LINDSTEDT_POINCARE).expect("periodic");
         compare(&exact, &found, |numerator, denominator, found| {
-            contains(*found, &Rational::new(numerator.clone(), denominator.clone()))
+            contains(
+                *found,
+                &Rational::new(numerator.clone(), denominator.clone()),
+            )
         });
     }
     // Damping is refused where it is certain.
-    let damped = |bound| expand(&Intervals, &[uncertain(1, [0, 1], bound)], 1, &LINDSTEDT_POINCARE);
+    let damped = |bound| {
+        expand(
+            &Intervals,
+            &[uncertain(1, [0, 1], bound)],
+            1,
+            &LINDSTEDT_POINCARE,
+        )
+    };
     assert!(damped([-0.1, 0.2]).is_ok());
-    assert_eq!(damped([0.1, 0.2]).err(), Some(SecularError::Growth { order: 1 }));
+    assert_eq!(
+        damped([0.1, 0.2]).err(),
+        Some(SecularError::Growth { order: 1 })
+    );
     // An amplitude is determined only where its slope is.
     let cycle = scheme(
         AmplitudeConvention::FirstHarmonic,
         Amplitude::Determined,
         Detuning::Acceleration,
     );
-    let flat = [uncertain(1, [2, 1], [-4.0, 4.0]), uncertain(1, [0, 1], [-1.0, 1.0])];
+    let flat = [
+        uncertain(1, [2, 1], [-4.0, 4.0]),
+        uncertain(1, [0, 1], [-1.0, 1.0]),
+    ];
     let error = expand(&Intervals, &flat, 3, &cycle).err();
-    assert!(matches!(error, Some(SecularError::Degenerate { .. })), "{error:?}");
+    assert!(
+        matches!(error, Some(SecularError::Degenerate { .. })),
+        "{error:?}"
+    );
 }

@@ -1,4 +1,5 @@
-//! Sections and sweeps of any equation: closed forms, the known cascade of Duffing's two wells, and each motion of a sweep by itself.
+//! Sections and sweeps of any equation: closed forms, the known cascade of Duffing's two wells, and
+//! each motion of a sweep by itself.
 
 use std::f64::consts::{PI, TAU};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -22,7 +23,8 @@ fn every(period: &str) -> Option<Section> {
     Some(Section::Every(parse_expression(period).expect("a period")))
 }
 
-/// `x'' + 2 zeta x' + x = cos(Omega t)` settles on a circle of the section: one point, known in closed form.
+/// `x'' + 2 zeta x' + x = cos(Omega t)` settles on a circle of the section: one point, known in
+/// closed form.
 #[test]
 fn a_linear_motion_settles_on_one_point() {
     let mut course = course("x'' + x'/5 + x = cos(W*t)", &[("x", 1.0)], 300.0);
@@ -37,7 +39,10 @@ fn a_linear_motion_settles_on_one_point() {
     assert!(motion.crossings().len() > 9);
     for crossing in motion.crossings() {
         for (found, expected) in crossing.state.iter().zip(expected) {
-            assert!((found - expected).abs() < 1e-9, "{crossing:?}, expected {expected:?}");
+            assert!(
+                (found - expected).abs() < 1e-9,
+                "{crossing:?}, expected {expected:?}"
+            );
         }
     }
     let [[least, greatest]] = motion.extremes()[..] else {
@@ -46,13 +51,18 @@ fn a_linear_motion_settles_on_one_point() {
     assert!((greatest - square.sqrt().recip()).abs() < 1e-9 && (least + greatest).abs() < 1e-9);
 }
 
-/// The zeros of the velocity from below are the least displacements: every turn of a linear motion, once.
+/// The zeros of the velocity from below are the least displacements: every turn of a linear motion,
+/// once.
 #[test]
 fn a_section_meets_every_zero_from_below() {
     let mut free = course("x'' + 4*x = 0", &[("x", 1.5)], 20.0);
     free.section = Some(Section::Rising(parse_expression("x'").expect("a velocity")));
     let motion = free.follow().expect("a motion");
-    let times: Vec<f64> = motion.crossings().iter().map(|crossing| crossing.time).collect();
+    let times: Vec<f64> = motion
+        .crossings()
+        .iter()
+        .map(|crossing| crossing.time)
+        .collect();
     let expected: Vec<f64> = (0..)
         .map(|turn| PI / 2.0 + PI * f64::from(turn))
         .take_while(|time| *time < 20.0)
@@ -69,8 +79,8 @@ fn a_section_meets_every_zero_from_below() {
     );
 }
 
-/// A section through a turning point is touched from one side, whatever rounding does there; a little inside it is crossed, a little outside
-/// it is not met.
+/// A section through a turning point is touched from one side, whatever rounding does there; a
+/// little inside it is crossed, a little outside it is not met.
 #[test]
 fn a_section_at_a_turning_point_is_touched_not_crossed() {
     for (section, crossed, touched) in [
@@ -84,7 +94,9 @@ fn a_section_at_a_turning_point_is_touched_not_crossed() {
     ] {
         for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
             let mut free = course("x'' + x = 0", &[("x", 1.0)], 40.0);
-            free.section = Some(Section::Rising(parse_expression(section).expect("a section")));
+            free.section = Some(Section::Rising(
+                parse_expression(section).expect("a section"),
+            ));
             let motion = free.follow_by(integrator).expect("a motion");
             let found = (motion.crossings().len(), motion.touches().len());
             assert_eq!(
@@ -117,19 +129,28 @@ fn small_swings_are_no_touches() {
     assert!(motion.touches().is_empty() && motion.crossings().len().abs_diff(turns) <= 1);
 }
 
-/// The cascade of two wells (D. W. Jordan and P. Smith, *Nonlinear Ordinary Differential Equations*, chapter 13): with
-/// `x'' + 0.3 x' - x + x^3 = F cos 1.2 t` the period of the drive is kept at F = 0.20, doubled at 0.28, four times as long at 0.29, five
-/// times at 0.37, doubled at 0.65.
+/// The cascade of two wells (D. W. Jordan and P. Smith, *Nonlinear Ordinary Differential
+/// Equations*, chapter 13): with `x'' + 0.3 x' - x + x^3 = F cos 1.2 t` the period of the drive is
+/// kept at F = 0.20, doubled at 0.28, four times as long at 0.29, five times at 0.37, doubled
+/// at 0.65.
 #[test]
 fn the_two_wells_double_their_period() {
-    let mut wells = course("x'' + 3/10*x' - x + x^3 = F*cos(6/5*t)", &[("x", 1.0)], 1500.0);
+    let mut wells = course(
+        "x'' + 3/10*x' - x + x^3 = F*cos(6/5*t)",
+        &[("x", 1.0)],
+        1500.0,
+    );
     wells.section = every("2*pi/(6/5)");
     wells.after = 1300.0;
     let forces = [(0.20, 1), (0.28, 2), (0.29, 4), (0.37, 5), (0.65, 2)];
     let grid: Vec<Vec<f64>> = forces.iter().map(|(force, _)| vec![*force]).collect();
     let motions = sweep(&wells, &[Symbol::new("F")], &grid, || ()).expect("motions");
     for (motion, (force, expected)) in motions.iter().zip(forces) {
-        let mut points: Vec<f64> = motion.crossings.iter().map(|crossing| crossing.state[0]).collect();
+        let mut points: Vec<f64> = motion
+            .crossings
+            .iter()
+            .map(|crossing| crossing.state[0])
+            .collect();
         assert!(points.len() > 30);
         points.sort_by(f64::total_cmp);
         points.dedup_by(|one, other| (*one - *other).abs() < 1e-3);
@@ -173,8 +194,8 @@ fn a_period_that_is_none_is_refused() {
     }
 }
 
-/// The energy of an equation, its potential in closed form, against the work of every other term: in steady state the drive gives what
-/// damping takes, `pi c W |X|^2` a period.
+/// The energy of an equation, its potential in closed form, against the work of every other term:
+/// in steady state the drive gives what damping takes, `pi c W |X|^2` a period.
 #[test]
 fn the_energy_of_an_equation_is_accounted_for_term_by_term() {
     let equations = [
@@ -209,7 +230,11 @@ fn the_energy_of_an_equation_is_accounted_for_term_by_term() {
     let work_until = |duration: f64| {
         let mut driven = course("x'' + c*x' + x = cos(W*t)", &[("x", 0.0)], duration);
         driven.values = [(Symbol::new("c"), c), (Symbol::new("W"), w)].into();
-        let balance = driven.follow().expect("a motion").balance.expect("an energy");
+        let balance = driven
+            .follow()
+            .expect("a motion")
+            .balance
+            .expect("an energy");
         balance
             .works
             .into_iter()
@@ -228,7 +253,8 @@ fn the_energy_of_an_equation_is_accounted_for_term_by_term() {
     }
 }
 
-/// Once somebody asks to stop, no motion of a sweep is begun: those that were begun before are what they are, and no others come.
+/// Once somebody asks to stop, no motion of a sweep is begun: those that were begun before are what
+/// they are, and no others come.
 #[test]
 fn a_sweep_that_is_interrupted_begins_no_other_motion() {
     static STOP: AtomicBool = AtomicBool::new(false);
@@ -237,7 +263,9 @@ fn a_sweep_that_is_interrupted_begins_no_other_motion() {
     const ENOUGH: usize = 5;
     let mut course = course("x'' + k*x = 0", &[("x'", 1.0)], 10.0);
     course.interrupt = Interrupt::by(&STOP);
-    let grid: Vec<Vec<f64>> = (0..MOTIONS).map(|index| vec![1.0 + index as f64 / 100.0]).collect();
+    let grid: Vec<Vec<f64>> = (0..MOTIONS)
+        .map(|index| vec![1.0 + index as f64 / 100.0])
+        .collect();
     let count = || {
         if DONE.fetch_add(1, Ordering::Relaxed) + 1 >= ENOUGH {
             STOP.store(true, Ordering::Relaxed);
@@ -251,24 +279,43 @@ fn a_sweep_that_is_interrupted_begins_no_other_motion() {
         "{}",
         motions.len()
     );
-    for motion in motions.iter().filter(|motion| motion.reason == End::Reached) {
+    for motion in motions
+        .iter()
+        .filter(|motion| motion.reason == End::Reached)
+    {
         let frequency = motion.values[0].sqrt();
-        assert!((motion.extremes[0][1] - 1.0 / frequency).abs() < 1e-10, "{motion:?}");
+        assert!(
+            (motion.extremes[0][1] - 1.0 / frequency).abs() < 1e-10,
+            "{motion:?}"
+        );
         assert!(
             (motion.state[0] - (frequency * 10.0).sin() / frequency).abs() < 1e-10,
             "{motion:?}"
         );
     }
-    assert!(motions.windows(2).all(|pair| pair[0].values < pair[1].values));
+    assert!(
+        motions
+            .windows(2)
+            .all(|pair| pair[0].values < pair[1].values)
+    );
     // One that has not come to the time from which it counts is none.
     course.after = 5.0;
-    assert!(sweep(&course, &["k".into()], &grid, || ()).expect("motions").is_empty());
+    assert!(
+        sweep(&course, &["k".into()], &grid, || ())
+            .expect("motions")
+            .is_empty()
+    );
 }
 
-/// Each motion of a sweep is bit for bit the one that is followed by itself: smooth, with corners that move, with pulses, powers and friction.
+/// Each motion of a sweep is bit for bit the one that is followed by itself: smooth, with corners
+/// that move, with pulses, powers and friction.
 #[test]
 fn a_motion_of_a_sweep_is_that_followed_alone() {
-    let rising = |expression: &str| Some(Section::Rising(parse_expression(expression).expect("an expression")));
+    let rising = |expression: &str| {
+        Some(Section::Rising(
+            parse_expression(expression).expect("an expression"),
+        ))
+    };
     let cases = [
         ("x'' + 2*p*x' + sin(x) = 0", "p", None),
         ("x'' + 2*p*x' + p*sin(p*x) = 0", "p", rising("x - p")),
@@ -298,7 +345,11 @@ fn a_motion_of_a_sweep_is_that_followed_alone() {
             }
             let alone = alone.follow().expect("a motion");
             assert_eq!(swept.reason, alone.reason(), "{equation}");
-            assert_eq!(swept.state, alone.at(alone.end()).expect("a state"), "{equation}");
+            assert_eq!(
+                swept.state,
+                alone.at(alone.end()).expect("a state"),
+                "{equation}"
+            );
             assert_eq!(swept.extremes, alone.extremes(), "{equation}");
             assert_eq!(swept.crossings, alone.crossings(), "{equation}");
             assert_eq!(swept.touches, alone.touches(), "{equation}");

@@ -1,4 +1,5 @@
-//! Branches of limit cycles against what is known of them otherwise: closed forms, printed numbers, the return map.
+//! Branches of limit cycles against what is known of them otherwise: closed forms, printed numbers,
+//! the return map.
 
 use lindstedt::numeric::return_map::{Equation, LimitCycle, nearest_limit_cycle};
 use lindstedt::response::bifurcation::BifurcationKind;
@@ -19,12 +20,19 @@ fn points(response: &Response) -> impl Iterator<Item = &Point> {
 }
 
 fn kinds(response: &Response, kind: BifurcationKind) -> Vec<f64> {
-    let of_kind = response.bifurcations.iter().filter(|found| found.kind == kind);
+    let of_kind = response
+        .bifurcations
+        .iter()
+        .filter(|found| found.kind == kind);
     of_kind.map(|found| found.parameter).collect()
 }
 
 /// The cycle that the return map finds near this amplitude: another way, by other code.
-fn returned(acceleration: &dyn Fn(f64, f64) -> f64, amplitude: f64, attracts: bool) -> Option<LimitCycle> {
+fn returned(
+    acceleration: &dyn Fn(f64, f64) -> f64,
+    amplitude: f64,
+    attracts: bool,
+) -> Option<LimitCycle> {
     let equation = Equation {
         acceleration,
         equilibrium: 0.0,
@@ -32,7 +40,8 @@ fn returned(acceleration: &dyn Fn(f64, f64) -> f64, amplitude: f64, attracts: bo
         frequency: 1.0,
     };
     let found = nearest_limit_cycle(&equation, Some(attracts)).ok()?;
-    (found.attracts() == attracts && (found.at(0.0).0 / amplitude - 1.0).abs() < 0.05).then_some(found)
+    (found.attracts() == attracts && (found.at(0.0).0 / amplitude - 1.0).abs() < 0.05)
+        .then_some(found)
 }
 
 /// On x = cos t the damping is zero, its derivative by the velocity has the mean mu.
@@ -63,7 +72,8 @@ fn a_circle_is_exact() {
     }
 }
 
-/// Printed numbers of van der Pol's oscillator, peaks and periods: M. Urabe, *IRE Trans. Circuit Theory* 7 (1960) 382.
+/// Printed numbers of van der Pol's oscillator, peaks and periods: M. Urabe, *IRE Trans. Circuit
+/// Theory* 7 (1960) 382.
 #[test]
 fn van_der_pol_has_its_printed_amplitude_and_period() {
     let found = respond(&Question {
@@ -73,7 +83,9 @@ fn van_der_pol_has_its_printed_amplitude_and_period() {
     .expect("a response");
     assert_eq!((found.branches.len(), found.verdict), (1, Verdict::Pass));
     for (mu, peak, period) in [(1.0, 2.00862, 6.66329), (5.0, 2.02151, 11.6122)] {
-        let point = points(&found).find(|point| point.parameter == mu).expect("an end");
+        let point = points(&found)
+            .find(|point| point.parameter == mu)
+            .expect("an end");
         assert!(
             (std::f64::consts::TAU / point.frequency - period).abs() < 1e-3,
             "{point:?}"
@@ -111,15 +123,22 @@ fn two_cycles_meet_in_a_fold_and_one_is_born_from_rest() {
         let attracts = point.stable == Some(true);
         let acceleration = damped(point.parameter);
         let cycle = returned(&acceleration, point.peak, attracts).expect("a cycle");
-        assert!((cycle.at(0.0).0 / point.peak - 1.0).abs() < 1e-4, "{point:?}");
+        assert!(
+            (cycle.at(0.0).0 / point.peak - 1.0).abs() < 1e-4,
+            "{point:?}"
+        );
         let period = std::f64::consts::TAU / point.frequency;
         assert!((cycle.period() / period - 1.0).abs() < 1e-5, "{point:?}");
         seen[usize::from(attracts)] += 1;
     }
     assert!(seen.iter().all(|count| *count > 2), "{seen:?}");
     // On this side of the fold the return map has its two fixed points, beyond it none.
-    let both = |mu: f64| [true, false].map(|attracts| returned(&damped(mu), 1.0, attracts).is_some());
-    assert_eq!((both(fold - 1e-5), both(fold + 1e-5)), ([true, true], [false, false]));
+    let both =
+        |mu: f64| [true, false].map(|attracts| returned(&damped(mu), 1.0, attracts).is_some());
+    assert_eq!(
+        (both(fold - 1e-5), both(fold + 1e-5)),
+        ([true, true], [false, false])
+    );
 }
 
 /// The multiplier is the slope of the return map at its fixed point.
@@ -129,7 +148,8 @@ fn the_multiplier_is_the_slope_of_the_return_map() {
     let found = response("x'' - mu*(x' - x'^3/3) + x + x^3/4 = 0", "mu", [0.1, 0.4]);
     for point in points(&found).step_by(7) {
         let mu = point.parameter;
-        let acceleration = |_: f64, x: f64, v: f64| mu * (v - v.powi(3) / 3.0) - x - 0.25 * x.powi(3);
+        let acceleration =
+            |_: f64, x: f64, v: f64| mu * (v - v.powi(3) / 3.0) - x - 0.25 * x.powi(3);
         let options = Options::with_tolerance(1e-12);
         let next = |x: f64| {
             let turning = Event::stop(|_, _, v| v).falling();
@@ -146,7 +166,10 @@ fn the_multiplier_is_the_slope_of_the_return_map() {
         let step = 1e-5;
         let slope = (next(turn + step) - next(turn - step)) / (2.0 * step);
         let multiplier = point.multipliers.expect("multipliers")[0].re;
-        assert!((multiplier / slope - 1.0).abs() < 1e-3, "{mu}: {multiplier} {slope}");
+        assert!(
+            (multiplier / slope - 1.0).abs() < 1e-3,
+            "{mu}: {multiplier} {slope}"
+        );
     }
 }
 
@@ -161,7 +184,8 @@ fn without_damping_there_is_a_centre_and_no_branch_of_it() {
     assert!(points(&found).all(|point| (point.stable == Some(true)) == (point.parameter > 0.0)));
 }
 
-/// The cycle swells until it touches the saddle at x = 1: its period has no bound, and what is not judged is not shown.
+/// The cycle swells until it touches the saddle at x = 1: its period has no bound, and what is not
+/// judged is not shown.
 #[test]
 fn a_branch_ends_where_its_period_grows_without_bound() {
     let found = respond(&Question {
@@ -171,7 +195,9 @@ fn a_branch_ends_where_its_period_grows_without_bound() {
     .expect("a response");
     let branch = &found.branches[0];
     assert!(branch.ends.contains(&BranchEnd::Slow) && found.verdict == Verdict::Pass);
-    let slowest = points(&found).map(|point| point.frequency).fold(1.0, f64::min);
+    let slowest = points(&found)
+        .map(|point| point.frequency)
+        .fold(1.0, f64::min);
     assert!(slowest < 0.2 && points(&found).all(|point| point.peak < 0.8));
     assert!(kinds(&found, BifurcationKind::Hopf)[0].abs() < 1e-9);
 }
@@ -179,8 +205,14 @@ fn a_branch_ends_where_its_period_grows_without_bound() {
 /// Lengths and times of any unit.
 #[test]
 fn units_do_not_matter() {
-    let found = response("x'' - 50*mu*(1 - x^2/400)*x' + 2500*x = 0", "mu", [0.5, 1.0]);
-    let last = points(&found).find(|point| point.parameter == 1.0).expect("an end");
+    let found = response(
+        "x'' - 50*mu*(1 - x^2/400)*x' + 2500*x = 0",
+        "mu",
+        [0.5, 1.0],
+    );
+    let last = points(&found)
+        .find(|point| point.parameter == 1.0)
+        .expect("an end");
     assert!(
         (last.peak / 20.0 - 2.00862).abs() < 1e-3
             && (last.frequency / 50.0 * 6.66329 / std::f64::consts::TAU - 1.0).abs() < 1e-4
@@ -191,7 +223,10 @@ fn units_do_not_matter() {
 fn what_does_not_swing_by_itself_is_refused() {
     for (equation, words) in [
         ("x'' + k*x + x^3 = 0", "there is no drive: time"),
-        ("x'' + k*x' + x = 0", "no limit cycle was found for k from 0.5 to 2"),
+        (
+            "x'' + k*x' + x = 0",
+            "no limit cycle was found for k from 0.5 to 2",
+        ),
         ("x'' + k*x' + x^3 + x'^3 = 0", "no limit cycle"),
     ] {
         let refused = respond(&question(equation, "k", [0.5, 2.0], "")).expect_err(equation);
@@ -201,5 +236,10 @@ fn what_does_not_swing_by_itself_is_refused() {
         periods: 2,
         ..question("x'' - mu*(1 - x^2)*x' + x = 0", "mu", [0.5, 1.0], "")
     });
-    assert!(refused.expect_err("periods").to_string().contains("2 periods"));
+    assert!(
+        refused
+            .expect_err("periods")
+            .to_string()
+            .contains("2 periods")
+    );
 }

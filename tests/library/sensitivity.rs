@@ -1,4 +1,5 @@
-//! Until when the digits of a motion are those of its start: two integrators, whose errors have nothing in common, part there.
+//! Until when the digits of a motion are those of its start: two integrators, whose errors have
+//! nothing in common, part there.
 
 use lindstedt::Oscillator;
 use lindstedt::system::Integrator;
@@ -33,10 +34,14 @@ fn two_integrators_part_where_six_digits_are_lost() {
             .map(|integrator| course.clone().follow_by(integrator).expect(equation));
         let known = motions[0].known_until().expect(equation);
         assert!((20.0..350.0).contains(&known), "{equation}: {known}");
-        // Rounding errors differ from an integrator to the other, so that where they part is known to a factor.
+        // Rounding errors differ from an integrator to the other, so that where they part is known
+        // to a factor.
         let [before, there] = [0.8 * known, known].map(|time| apart(&motions, time));
         assert!(before < 1e-6, "{equation}: {before:e} before {known}");
-        assert!((1e-8..1e-3).contains(&there), "{equation}: {there:e} at {known}");
+        assert!(
+            (1e-8..1e-3).contains(&there),
+            "{equation}: {there:e} at {known}"
+        );
     }
 }
 

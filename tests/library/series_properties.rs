@@ -1,10 +1,13 @@
-//! Laws that hold for every series: the ring, the product rule, the equation that is solved, and Taylor's theorem.
+//! Laws that hold for every series: the ring, the product rule, the equation that is solved, and
+//! Taylor's theorem.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use lindstedt::Symbol;
 use lindstedt::exact::Monomial;
-use lindstedt::exact::{Doubles, Integer, Integers, POLYNOMIALS, Polynomial, Polynomials, Rational, Rationals};
+use lindstedt::exact::{
+    Doubles, Integer, Integers, POLYNOMIALS, Polynomial, Polynomials, Rational, Rationals,
+};
 use lindstedt::exact::{ratio, to_f64};
 use lindstedt::expr::{Expr, Function, Node, parse_expression};
 use lindstedt::series::Convolutions;
@@ -35,10 +38,13 @@ fn series() -> impl Strategy<Value = FourierSeries<Integers>> {
 
 fn polynomial() -> impl Strategy<Value = Polynomial> {
     prop::collection::vec((-9_i64..=9, 1_i64..=4, -2_i32..=3, -2_i32..=3), 0..5).prop_map(|terms| {
-        terms.into_iter().fold(Polynomial::zero(), |sum, (p, q, a, k)| {
-            let monomial = Monomial::power_of("A".into(), a).product(&Monomial::power_of("k".into(), k));
-            sum + Polynomial::term(monomial, ratio(p, q))
-        })
+        terms
+            .into_iter()
+            .fold(Polynomial::zero(), |sum, (p, q, a, k)| {
+                let monomial =
+                    Monomial::power_of("A".into(), a).product(&Monomial::power_of("k".into(), k));
+                sum + Polynomial::term(monomial, ratio(p, q))
+            })
     })
 }
 
@@ -47,7 +53,8 @@ fn symbolic_series() -> impl Strategy<Value = FourierSeries<Polynomials<Integers
     let numerator = || {
         prop::collection::vec((-9_i64..=9, 0_i32..=2, -1_i32..=2), 0..3).prop_map(|terms| {
             let term = |(c, a, k): (i64, i32, i32)| {
-                let monomial = Monomial::power_of("A".into(), a).product(&Monomial::power_of("k".into(), k));
+                let monomial =
+                    Monomial::power_of("A".into(), a).product(&Monomial::power_of("k".into(), k));
                 Polynomial::term(monomial, Integer::from(c))
             };
             terms
@@ -105,7 +112,8 @@ proptest! {
         let close = |left: f64, right: f64, scale: f64| (left - right).abs() <= 1e-12 * (1.0 + scale);
         prop_assert!(close(value(&(a.clone() + b.clone())), value(&a) + value(&b), size(&a) + size(&b)));
         prop_assert!(close(value(&a.product(&b)), value(&a) * value(&b), size(&a) * size(&b)));
-        // Numbers put in exactly, one after the other, give the same value, and substitution respects products.
+        // Numbers put in exactly, one after the other, give the same value, and substitution
+        // respects products.
         let number = |value: &Rational| Polynomial::constant(value.clone());
         let exact = |polynomial: &Polynomial| {
             let once = polynomial.substitute("A".into(), &number(&point)).expect("not zero");
@@ -247,7 +255,8 @@ proptest! {
 
     #[test]
     fn taylors_theorem_in_one_variable(which in 0..FUNCTIONS.len(), p in -7_i64..=7, q in 8_i64..=11) {
-        // The k-th coefficient is the k-th derivative over k!, for every function of the grammar at every point.
+        // The k-th coefficient is the k-th derivative over k!, for every function of the grammar at
+        // every point.
         let point = ratio(p, q);
         let function = parse_expression(FUNCTIONS[which]).expect("an expression");
         // Only at a corner is there no series, and there always.
@@ -273,7 +282,8 @@ proptest! {
     fn taylors_theorem_in_two_variables(
         which in 0..FUNCTIONS.len(), p in -7_i64..=7, q in -7_i64..=7, direction in (-5_i64..=5, -5_i64..=5)
     ) {
-        // Part k at a deviation (d, e) is the sum of d^i e^j / (i! j!) times the partial derivative, i + j = k.
+        // Part k at a deviation (d, e) is the sum of d^i e^j / (i! j!) times the partial
+        // derivative, i + j = k.
         const DEGREE: usize = 3;
         let (x, y) = (Symbol::new("x"), Symbol::new("y"));
         let argument = parse_expression("x/2 + y/3 + x*y/4").expect("an expression");
@@ -333,7 +343,11 @@ fn every_function_of_the_grammar_is_expanded() {
         .map(Function::name)
         .collect();
     assert_eq!(missing, Vec::<&str>::new());
-    assert!(CORNER_AT_ZERO.iter().all(|corner| FUNCTIONS.contains(corner)));
+    assert!(
+        CORNER_AT_ZERO
+            .iter()
+            .all(|corner| FUNCTIONS.contains(corner))
+    );
 }
 
 /// Every function of the grammar, inside its domain for |x| < 1.
@@ -364,9 +378,15 @@ const FUNCTIONS: [&str; 20] = [
 fn several_variables_at_once() {
     // exp(x) cos(v) about (0, 0): the part of degree three is x^3/6 - x v^2/2.
     let function = parse_expression("exp(x)*cos(x')").expect("an expression");
-    let point = [("x".into(), Rational::zero()), ("x'".into(), Rational::zero())];
+    let point = [
+        ("x".into(), Rational::zero()),
+        ("x'".into(), Rational::zero()),
+    ];
     let parts = taylor(&function, &point, 3).expect("analytic");
-    assert_eq!(parts[3], parse_expression("x^3/6 - x*x'^2/2").expect("an expression"));
+    assert_eq!(
+        parts[3],
+        parse_expression("x^3/6 - x*x'^2/2").expect("an expression")
+    );
 }
 
 #[test]
@@ -383,7 +403,10 @@ fn symbolic_coefficients_stay_exact() {
         1,
     )
     .expect("analytic");
-    assert_eq!(half[0], Expr::sin(&Expr::number(ratio(1, 2))).expect("a sine"));
+    assert_eq!(
+        half[0],
+        Expr::sin(&Expr::number(ratio(1, 2))).expect("a sine")
+    );
 }
 
 #[test]
@@ -403,7 +426,10 @@ fn corners_and_branch_points_are_refused() {
     ] {
         let function = parse_expression(text).expect("an expression");
         let error = taylor(&function, &[("x".into(), Rational::zero())], 3).expect_err(text);
-        assert!(error.to_string().contains("x = 0") || text == "1/x", "{text}: {error}");
+        assert!(
+            error.to_string().contains("x = 0") || text == "1/x",
+            "{text}: {error}"
+        );
     }
     // These look like branch points and are none.
     for (text, expected) in [

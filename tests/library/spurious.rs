@@ -1,4 +1,5 @@
-//! Steady motions that only the truncation of slow equations makes: left out where no true motion is near, and only there.
+//! Steady motions that only the truncation of slow equations makes: left out where no true motion
+//! is near, and only there.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -28,21 +29,40 @@ fn found(solution: &Solution, at: &Values) -> SteadyMotions {
     solution.steady_motions(&|name| numbers.get(&name).copied())
 }
 
-/// The amplitude of the true motion to which Newton's method leads from a steady motion by the formula; nothing where it leads to none.
-fn true_amplitude(equation: &str, solution: &Solution, at: &Values, state: &SteadyState) -> Option<f64> {
+/// The amplitude of the true motion to which Newton's method leads from a steady motion by the
+/// formula; nothing where it leads to none.
+fn true_amplitude(
+    equation: &str,
+    solution: &Solution,
+    at: &Values,
+    state: &SteadyState,
+) -> Option<f64> {
     let oscillator = Oscillator::parse(equation).expect(equation);
     let resonance = solution.modulation.as_ref()?.resonance.as_ref()?;
     let mut numbers: BTreeMap<Symbol, f64> = at.numbers();
-    let period = TAU * f64::from(resonance.times_linear) / resonance.driving_frequency.evaluate(&numbers).ok()?;
-    let defined = solution.defined_values(&|name| numbers.get(&name).copied()).ok()?;
+    let period = TAU * f64::from(resonance.times_linear)
+        / resonance.driving_frequency.evaluate(&numbers).ok()?;
+    let defined = solution
+        .defined_values(&|name| numbers.get(&name).copied())
+        .ok()?;
     numbers.extend(defined);
-    let exact = |(name, value): (&Symbol, &f64)| (*name, format!("{value:.17}").parse::<Expr>().expect("a number"));
+    let exact = |(name, value): (&Symbol, &f64)| {
+        (
+            *name,
+            format!("{value:.17}").parse::<Expr>().expect("a number"),
+        )
+    };
     let values: BTreeMap<Symbol, Expr> = numbers.iter().map(exact).collect();
     let [t, x] = ["t", "x"].map(Symbol::new);
     let force = oscillator.force.substitute_all(&values).ok()?;
     let force = CompiledFunction::new(&force, &[t, x, x.derivative()]).ok()?;
     let slow = solution.modulation.as_ref()?;
-    let motion = solution.response.as_ref()?.motion.substitute_all(&values).ok()?;
+    let motion = solution
+        .response
+        .as_ref()?
+        .motion
+        .substitute_all(&values)
+        .ok()?;
     let arguments = [t, slow.amplitude, slow.phase];
     let [position, velocity] = [motion.clone(), motion.differentiate(t).ok()?]
         .map(|motion| CompiledFunction::new(&motion, &arguments).expect("compiled"));
@@ -56,21 +76,66 @@ fn true_amplitude(equation: &str, solution: &Solution, at: &Values, state: &Stea
 fn no_true_motion_is_near_what_is_left_out() {
     let mut left_out = 0;
     for (equation, resonance, order, at) in [
-        (PARAMETRIC, (1, 1), 2, "zeta = 1/1000, h = 1/5, eps = 1/10, Omega = 1"),
+        (
+            PARAMETRIC,
+            (1, 1),
+            2,
+            "zeta = 1/1000, h = 1/5, eps = 1/10, Omega = 1",
+        ),
         (
             PARAMETRIC,
             (1, 1),
             2,
             "zeta = 1/1000, h = 1/5, eps = 1/100, Omega = 21/20",
         ),
-        (PARAMETRIC, (1, 1), 2, "zeta = 1/200, h = 1/2, eps = 1/100, Omega = 1"),
-        (PARAMETRIC, (2, 1), 2, "zeta = 1/100, h = 1/10, eps = 1/10, Omega = 2"),
-        (PARAMETRIC, (2, 1), 3, "zeta = 1/100, h = 1/10, eps = -1/10, Omega = 2"),
-        (DUFFING, (1, 1), 2, "zeta = 1/50, eps = 1/10, F = 3/50, Omega = 11/10"),
-        (DUFFING, (1, 1), 2, "zeta = 1/50, eps = 1/2, F = 1/2, Omega = 9/10"),
-        (DUFFING, (1, 1), 3, "zeta = 1/50, eps = 1/2, F = 1/2, Omega = 9/10"),
-        (DUFFING, (1, 3), 2, "zeta = 1/200, eps = 1/20, F = 1/2, Omega = 17/50"),
-        (DUFFING, (3, 1), 2, "zeta = 1/500, eps = 1/20, F = 4, Omega = 31/10"),
+        (
+            PARAMETRIC,
+            (1, 1),
+            2,
+            "zeta = 1/200, h = 1/2, eps = 1/100, Omega = 1",
+        ),
+        (
+            PARAMETRIC,
+            (2, 1),
+            2,
+            "zeta = 1/100, h = 1/10, eps = 1/10, Omega = 2",
+        ),
+        (
+            PARAMETRIC,
+            (2, 1),
+            3,
+            "zeta = 1/100, h = 1/10, eps = -1/10, Omega = 2",
+        ),
+        (
+            DUFFING,
+            (1, 1),
+            2,
+            "zeta = 1/50, eps = 1/10, F = 3/50, Omega = 11/10",
+        ),
+        (
+            DUFFING,
+            (1, 1),
+            2,
+            "zeta = 1/50, eps = 1/2, F = 1/2, Omega = 9/10",
+        ),
+        (
+            DUFFING,
+            (1, 1),
+            3,
+            "zeta = 1/50, eps = 1/2, F = 1/2, Omega = 9/10",
+        ),
+        (
+            DUFFING,
+            (1, 3),
+            2,
+            "zeta = 1/200, eps = 1/20, F = 1/2, Omega = 17/50",
+        ),
+        (
+            DUFFING,
+            (3, 1),
+            2,
+            "zeta = 1/500, eps = 1/20, F = 4, Omega = 31/10",
+        ),
     ] {
         let solution = derived(equation, resonance, order);
         let at: Values = at.parse().expect("values");
@@ -78,7 +143,10 @@ fn no_true_motion_is_near_what_is_left_out() {
         for state in &motions.spurious {
             let truth = true_amplitude(equation, &solution, &at, state);
             let near = truth.is_some_and(|truth| (truth / state.amplitude - 1.0).abs() < 0.2);
-            assert!(!near, "{equation} {at:?} {resonance:?} {order}: {state:?} {truth:?}");
+            assert!(
+                !near,
+                "{equation} {at:?} {resonance:?} {order}: {state:?} {truth:?}"
+            );
         }
         left_out += motions.spurious.len();
     }
@@ -144,7 +212,8 @@ fn motions_of_the_equation_stay() {
         let judged = judge(&oscillator, &solution, &values, 0.05).expect(equation);
         assert_eq!(judged.steady_states.len(), count, "{equation} {at} {order}");
         for state in &judged.steady_states {
-            let near = state.state.amplitude == 0.0 || state.relative_error.is_some_and(|error| error.abs() < 0.05);
+            let near = state.state.amplitude == 0.0
+                || state.relative_error.is_some_and(|error| error.abs() < 0.05);
             assert!(
                 near && state.true_stable == Some(state.state.is_stable()),
                 "{equation} {at}: {state:?}"
@@ -153,8 +222,8 @@ fn motions_of_the_equation_stay() {
     }
 }
 
-/// Beside a jump two motions are born whose leading order has none: where the first order has one motion and the second has three, none
-/// of the three is left out.
+/// Beside a jump two motions are born whose leading order has none: where the first order has one
+/// motion and the second has three, none of the three is left out.
 #[test]
 fn a_jump_moves_with_the_order() {
     let [first, second] = [1, 2].map(|order| derived(DUFFING, (1, 1), order));
@@ -176,8 +245,9 @@ fn a_jump_moves_with_the_order() {
 
 const QUADRATIC: &str = "x'' + 2*zeta*x' + x + b*x^2 = F*cos(Omega*t)";
 
-/// A steady motion that nothing saturates to leading order is one of the equation all the same: subharmonic and superharmonic motions whose
-/// amplitude the second order decides, against the true ones.
+/// A steady motion that nothing saturates to leading order is one of the equation all the same:
+/// subharmonic and superharmonic motions whose amplitude the second order decides, against the true
+/// ones.
 #[test]
 fn motions_that_the_last_order_holds_stay() {
     for (equation, resonance, order, at, amplitudes) in [
@@ -211,7 +281,10 @@ fn motions_that_the_last_order_holds_stay() {
             0.1,
         )
         .expect(at);
-        let moving = judged.steady_states.iter().filter(|state| state.state.amplitude > 0.0);
+        let moving = judged
+            .steady_states
+            .iter()
+            .filter(|state| state.state.amplitude > 0.0);
         let found: Vec<f64> = moving.filter_map(|state| state.true_amplitude).collect();
         assert_eq!(found.len(), amplitudes.len(), "{equation} {at}: {found:?}");
         for (found, expected) in found.iter().zip(&amplitudes) {
@@ -221,32 +294,88 @@ fn motions_that_the_last_order_holds_stay() {
             );
         }
         for state in &judged.steady_states {
-            let near = state.state.amplitude == 0.0 || state.relative_error.is_some_and(|error| error.abs() < 0.2);
+            let near = state.state.amplitude == 0.0
+                || state.relative_error.is_some_and(|error| error.abs() < 0.2);
             assert!(near, "{equation} {at} {order}: {state:?}");
         }
     }
 }
 
-/// Every place at which the printed slow equations vanish is among the steady motions: Newton's method from a fine grid finds no other, and
-/// finds them all.
+/// Every place at which the printed slow equations vanish is among the steady motions: Newton's
+/// method from a fine grid finds no other, and finds them all.
 #[test]
 fn steady_motions_are_all_roots_of_the_slow_equations() {
     for (equation, resonance, order, at) in [
-        (DUFFING, (1, 1), 1, "zeta = 1/50, eps = 1/10, F = 3/50, Omega = 11/10"),
-        (DUFFING, (1, 1), 2, "zeta = 1/50, eps = 1/2, F = 1/2, Omega = 9/10"),
-        (DUFFING, (1, 1), 3, "zeta = 1/50, eps = 1/2, F = 1/2, Omega = 9/10"),
-        (DUFFING, (1, 3), 2, "zeta = 1/500, eps = 1/20, F = 6/5, Omega = 37/100"),
-        (DUFFING, (3, 1), 2, "zeta = 1/500, eps = 1/20, F = 4, Omega = 31/10"),
-        (QUADRATIC, (2, 1), 2, "zeta = 1/200, b = 1/10, F = 3/5, Omega = 201/100"),
-        (QUADRATIC, (1, 2), 2, "zeta = 1/100, b = 1/5, F = 1/2, Omega = 51/100"),
-        (PARAMETRIC, (1, 1), 2, "zeta = 1/1000, h = 1/5, eps = 1/10, Omega = 1"),
-        (PARAMETRIC, (1, 1), 3, "zeta = 1/1000, h = 1/10, eps = 1/100, Omega = 1"),
-        (PARAMETRIC, (2, 1), 3, "zeta = 1/100, h = 1/10, eps = -1/10, Omega = 2"),
+        (
+            DUFFING,
+            (1, 1),
+            1,
+            "zeta = 1/50, eps = 1/10, F = 3/50, Omega = 11/10",
+        ),
+        (
+            DUFFING,
+            (1, 1),
+            2,
+            "zeta = 1/50, eps = 1/2, F = 1/2, Omega = 9/10",
+        ),
+        (
+            DUFFING,
+            (1, 1),
+            3,
+            "zeta = 1/50, eps = 1/2, F = 1/2, Omega = 9/10",
+        ),
+        (
+            DUFFING,
+            (1, 3),
+            2,
+            "zeta = 1/500, eps = 1/20, F = 6/5, Omega = 37/100",
+        ),
+        (
+            DUFFING,
+            (3, 1),
+            2,
+            "zeta = 1/500, eps = 1/20, F = 4, Omega = 31/10",
+        ),
+        (
+            QUADRATIC,
+            (2, 1),
+            2,
+            "zeta = 1/200, b = 1/10, F = 3/5, Omega = 201/100",
+        ),
+        (
+            QUADRATIC,
+            (1, 2),
+            2,
+            "zeta = 1/100, b = 1/5, F = 1/2, Omega = 51/100",
+        ),
+        (
+            PARAMETRIC,
+            (1, 1),
+            2,
+            "zeta = 1/1000, h = 1/5, eps = 1/10, Omega = 1",
+        ),
+        (
+            PARAMETRIC,
+            (1, 1),
+            3,
+            "zeta = 1/1000, h = 1/10, eps = 1/100, Omega = 1",
+        ),
+        (
+            PARAMETRIC,
+            (2, 1),
+            3,
+            "zeta = 1/100, h = 1/10, eps = -1/10, Omega = 2",
+        ),
     ] {
         let solution = derived(equation, resonance, order);
         let at: Values = at.parse().expect("values");
         let motions = found(&solution, &at);
-        let all: Vec<SteadyState> = motions.states.iter().chain(&motions.spurious).copied().collect();
+        let all: Vec<SteadyState> = motions
+            .states
+            .iter()
+            .chain(&motions.spurious)
+            .copied()
+            .collect();
         let largest = all.iter().map(|state| state.amplitude).fold(1.0, f64::max);
         let times = f64::from(resonance.0);
         let own: Vec<[f64; 2]> = on_grid(&solution, &at, 1.1 * largest);
@@ -254,18 +383,27 @@ fn steady_motions_are_all_roots_of_the_slow_equations() {
         let same = |[u, v]: &[f64; 2], state: &SteadyState| {
             let near = |k: u32| {
                 let angle = (state.phase + TAU * f64::from(k)) / times;
-                let [x, y] = [state.amplitude * angle.cos(), -state.amplitude * angle.sin()];
+                let [x, y] = [
+                    state.amplitude * angle.cos(),
+                    -state.amplitude * angle.sin(),
+                ];
                 (x - u).hypot(y - v) < 1e-5 * largest
             };
             (0..resonance.0).any(near)
         };
         for place in &own {
             let known = all.iter().any(|state| same(place, state));
-            assert!(known, "{equation} {at:?} {order}: {place:?} is missing in {all:?}");
+            assert!(
+                known,
+                "{equation} {at:?} {order}: {place:?} is missing in {all:?}"
+            );
         }
         for state in &all {
             let known = own.iter().any(|place| same(place, state));
-            assert!(known, "{equation} {at:?} {order}: {state:?} is none of {own:?}");
+            assert!(
+                known,
+                "{equation} {at:?} {order}: {state:?} is none of {own:?}"
+            );
         }
     }
 }
@@ -284,7 +422,12 @@ fn on_grid(solution: &Solution, at: &Values, size: f64) -> Vec<[f64; 2]> {
             .defined_values(&|name| at.get(name))
             .expect("all values are given"),
     );
-    let exact = |(name, value): (&Symbol, &f64)| (*name, format!("{value:.17}").parse::<Expr>().expect("a number"));
+    let exact = |(name, value): (&Symbol, &f64)| {
+        (
+            *name,
+            format!("{value:.17}").parse::<Expr>().expect("a number"),
+        )
+    };
     let values: BTreeMap<Symbol, Expr> = numbers.iter().map(exact).collect();
     let compiled = |part: &Expr| CompiledFunction::new(part, &plane.coordinates).expect("compiled");
     let rates: Vec<Expr> = plane
@@ -317,7 +460,8 @@ fn on_grid(solution: &Solution, at: &Values, size: f64) -> Vec<[f64; 2]> {
                 }
             }
             let settled = moved < 1e-9 * size && place[0].hypot(place[1]) <= size;
-            let is_new = |known: &[f64; 2]| (known[0] - place[0]).hypot(known[1] - place[1]) > 1e-6 * size;
+            let is_new =
+                |known: &[f64; 2]| (known[0] - place[0]).hypot(known[1] - place[1]) > 1e-6 * size;
             if settled && places.iter().all(is_new) {
                 places.push(place);
             }

@@ -1,5 +1,5 @@
-//! What `--steps` prints is read back and recomputed: every equation holds, every condition is met, and the orders together
-//! satisfy the equation of motion to the order they claim.
+//! What `--steps` prints is read back and recomputed: every equation holds, every condition is met,
+//! and the orders together satisfy the equation of motion to the order they claim.
 
 use std::collections::BTreeMap;
 
@@ -53,7 +53,10 @@ fn value_of(name: &str, lines: &[String]) -> Expr {
 type Numbers = BTreeMap<Symbol, f64>;
 
 fn numbers(pairs: &[(&str, f64)]) -> Numbers {
-    pairs.iter().map(|(name, value)| (Symbol::new(name), *value)).collect()
+    pairs
+        .iter()
+        .map(|(name, value)| (Symbol::new(name), *value))
+        .collect()
 }
 
 fn at(expression: &Expr, numbers: &Numbers, theta: f64) -> f64 {
@@ -65,10 +68,13 @@ fn at(expression: &Expr, numbers: &Numbers, theta: f64) -> f64 {
 }
 
 fn derivative(expression: &Expr) -> Expr {
-    expression.differentiate("theta".into()).expect("a derivative")
+    expression
+        .differentiate("theta".into())
+        .expect("a derivative")
 }
 
-/// `y_n'' + y_n` is the printed right side with the printed `W_n` in it, and the printed conditions hold.
+/// `y_n'' + y_n` is the printed right side with the printed `W_n` in it, and the printed conditions
+/// hold.
 fn orders_hold(solution: &Solution, numbers: &Numbers) {
     let lines = lines(solution);
     let angles = [0.3, 1.1, 2.7, 4.4];
@@ -78,7 +84,10 @@ fn orders_hold(solution: &Solution, numbers: &Numbers) {
         let mut numbers = numbers.clone();
         if n > 0 {
             let w = value_of(&format!("W{n}"), &lines);
-            numbers.insert(Symbol::new(&format!("W{n}")), w.evaluate(&numbers).expect("a number"));
+            numbers.insert(
+                Symbol::new(&format!("W{n}")),
+                w.evaluate(&numbers).expect("a number"),
+            );
         }
         let start = format!("y{n}'' + y{n} = ");
         let right = lines
@@ -94,7 +103,9 @@ fn orders_hold(solution: &Solution, numbers: &Numbers) {
                 solution.equation
             );
         }
-        let order = lines.iter().skip_while(|line| **line != format!("order {n}"));
+        let order = lines
+            .iter()
+            .skip_while(|line| **line != format!("order {n}"));
         let conditions = order
             .clone()
             .find_map(|line| line.strip_prefix("with "))
@@ -147,7 +158,8 @@ fn residual(solution: &Solution, unit: &Expr, numbers: &Numbers, small: (&str, f
         let mut at_theta = numbers.clone();
         at_theta.insert("x".into(), at(&motion, &numbers, theta));
         at_theta.insert("x'".into(), omega * at(&velocity, &numbers, theta));
-        omega * omega * at(&acceleration, &numbers, theta) + force.evaluate(&at_theta).expect("a force")
+        omega * omega * at(&acceleration, &numbers, theta)
+            + force.evaluate(&at_theta).expect("a force")
     };
     let sum: f64 = (0..48)
         .map(|k| defect(2.0 * std::f64::consts::PI * f64::from(k) / 48.0).powi(2))
@@ -188,9 +200,14 @@ fn the_orders_of_lindstedt_and_poincare_hold_as_printed() {
         }
         orders_hold(&solution, &at);
         let unit = Expr::symbol(values[0].0);
-        let ratio = residual(&solution, &unit, &at, ("eps", 2e-2)) / residual(&solution, &unit, &at, ("eps", 1e-2));
+        let ratio = residual(&solution, &unit, &at, ("eps", 2e-2))
+            / residual(&solution, &unit, &at, ("eps", 1e-2));
         let expected = f64::from(options.order.expect("an order") + 1);
-        assert!((ratio.log2() - expected).abs() < 0.2, "{equation}: {}", ratio.log2());
+        assert!(
+            (ratio.log2() - expected).abs() < 0.2,
+            "{equation}: {}",
+            ratio.log2()
+        );
     }
 }
 
@@ -203,8 +220,12 @@ fn the_orders_of_homotopy_perturbation_hold_as_printed() {
         // omega0^2 = omega^2 (1 - W1 - W2 - W3) is the relation that the answer gives.
         let lines = lines(&solution);
         let corrections = (1..=3).map(|n| value_of(&format!("W{n}"), &lines));
-        let sum: f64 = corrections.map(|w| w.evaluate(&at).expect("a number")).sum();
-        let left = value_of("omega0^2", &lines).evaluate(&at).expect("a number");
+        let sum: f64 = corrections
+            .map(|w| w.evaluate(&at).expect("a number"))
+            .sum();
+        let left = value_of("omega0^2", &lines)
+            .evaluate(&at)
+            .expect("a number");
         let relation = solution.law.relation().expect("a relation");
         let value = solution
             .evaluate(relation, &|symbol| at.get(&symbol).copied())
@@ -217,8 +238,8 @@ fn the_orders_of_homotopy_perturbation_hold_as_printed() {
     }
 }
 
-/// Every amplitude of a limit cycle follows from the secular sine that is printed with it, and the whole satisfies the
-/// equation of motion.
+/// Every amplitude of a limit cycle follows from the secular sine that is printed with it, and the
+/// whole satisfies the equation of motion.
 #[test]
 fn limit_cycles_have_their_amplitude_conditions() {
     for (equation, amplitude, others) in [
@@ -235,7 +256,10 @@ fn limit_cycles_have_their_amplitude_conditions() {
             vec![("b", 1.7)],
         ),
     ] {
-        for convention in [AmplitudeConvention::FirstHarmonic, AmplitudeConvention::Initial] {
+        for convention in [
+            AmplitudeConvention::FirstHarmonic,
+            AmplitudeConvention::Initial,
+        ] {
             let options = Options {
                 amplitude: Some(convention),
                 small: Some("mu".to_owned()),
@@ -277,7 +301,10 @@ fn limit_cycles_have_their_amplitude_conditions() {
                         .map(|k| self::at(&y, &at, sample(k)) * sample(k).cos())
                         .sum::<f64>()
                         / 32.0;
-                    assert!((part - value).abs() < 1e-12, "{equation}, {name}: {part} {value}");
+                    assert!(
+                        (part - value).abs() < 1e-12,
+                        "{equation}, {name}: {part} {value}"
+                    );
                 }
             }
             let unit = value_of("a0", &lines);
@@ -288,7 +315,8 @@ fn limit_cycles_have_their_amplitude_conditions() {
     }
 }
 
-/// `R_m` is the coefficient of `q^(m-1)` in `N[sum q^k u_k, sum q^k w_k]`, here by interpolation in q.
+/// `R_m` is the coefficient of `q^(m-1)` in `N[sum q^k u_k, sum q^k w_k]`, here by interpolation in
+/// q.
 #[test]
 fn homotopy_analysis_shows_its_residuals() {
     let order = 3;
@@ -299,7 +327,9 @@ fn homotopy_analysis_shows_its_residuals() {
         let solution = solution(equation, &by(Method::HomotopyAnalysis, order));
         let lines = lines(&solution);
         let mut values = numbers(&[("A", 0.6), ("eps", 0.4), ("hbar", -0.8)]);
-        let squared = value_of("w0^2", &lines).evaluate(&values).expect("a number");
+        let squared = value_of("w0^2", &lines)
+            .evaluate(&values)
+            .expect("a number");
         values.insert("w0".into(), squared.sqrt());
         let mut w = vec![squared.sqrt()];
         for m in 1..order {
@@ -308,7 +338,9 @@ fn homotopy_analysis_shows_its_residuals() {
             values.insert(Symbol::new(&name), value);
             w.push(value);
         }
-        let u: Vec<Expr> = (0..order).map(|m| value_of(&format!("u{m}"), &lines)).collect();
+        let u: Vec<Expr> = (0..order)
+            .map(|m| value_of(&format!("u{m}"), &lines))
+            .collect();
         // u0 has the amplitude, so that the others begin at rest at zero, as printed.
         for (m, u) in u.iter().enumerate().skip(1) {
             let start = [at(u, &values, 0.0), at(&derivative(u), &values, 0.0)];
@@ -316,7 +348,11 @@ fn homotopy_analysis_shows_its_residuals() {
                 start.iter().all(|value| value.abs() < 1e-14),
                 "{equation}, u{m}: {start:?}"
             );
-            assert!(lines.iter().any(|line| *line == format!("u{m}(0) = u{m}'(0) = 0")));
+            assert!(
+                lines
+                    .iter()
+                    .any(|line| *line == format!("u{m}(0) = u{m}'(0) = 0"))
+            );
         }
         let accelerations: Vec<Expr> = u.iter().map(|u| derivative(&derivative(u))).collect();
         for theta in [0.2, 1.0, 2.5] {
@@ -332,7 +368,11 @@ fn homotopy_analysis_shows_its_residuals() {
                 };
                 let omega: f64 = w.iter().zip(0..).map(|(w, k)| q.powi(k) * w).sum();
                 let x = sum(&u);
-                let force: f64 = powers.iter().zip(1..).map(|(c, power)| c * x.powi(power)).sum();
+                let force: f64 = powers
+                    .iter()
+                    .zip(1..)
+                    .map(|(c, power)| c * x.powi(power))
+                    .sum();
                 omega * omega * sum(&accelerations) + force
             };
             let matrix = DMatrix::from_fn(7, 7, |i, j| points[i].powi(j as i32));
@@ -364,7 +404,10 @@ fn homotopy_analysis_shows_its_residuals() {
 /// The printed coefficients solve the printed equations, and are those of the printed polynomials.
 #[test]
 fn hermite_pade_shows_the_system_it_solves() {
-    for (equation, degrees) in [("x'' + x + eps*x^3 = 0", [1, 2, 1]), ("x'' + k*sin(x) = 0", [2, 1, 2])] {
+    for (equation, degrees) in [
+        ("x'' + x + eps*x^3 = 0", [1, 2, 1]),
+        ("x'' + k*sin(x) = 0", [2, 1, 2]),
+    ] {
         let [p, q, r] = degrees;
         let options = Options {
             method: Some(Method::HermitePade),
@@ -385,21 +428,36 @@ fn hermite_pade_shows_the_system_it_solves() {
         }
         let equations: Vec<&String> = lines.iter().filter(|line| line.ends_with(" = 0")).collect();
         assert_eq!(equations.len(), (p + q + r + 2) as usize, "{equations:?}");
-        let size = values.values().fold(0.0_f64, |size, value| size.max(value.abs()));
+        let size = values
+            .values()
+            .fold(0.0_f64, |size, value| size.max(value.abs()));
         for equation in equations {
-            let left = equation.rsplit(":  ").next().and_then(|line| line.strip_suffix(" = 0"));
-            let left = read(left.expect("an equation")).evaluate(&values).expect("a number");
+            let left = equation
+                .rsplit(":  ")
+                .next()
+                .and_then(|line| line.strip_suffix(" = 0"));
+            let left = read(left.expect("an equation"))
+                .evaluate(&values)
+                .expect("a number");
             assert!(left.abs() < 1e-13 * size, "{equation}: {left}");
         }
         for letter in ["P", "Q", "R"] {
-            let defined = solution.definitions.iter().find(|own| own.symbol.name() == letter);
+            let defined = solution
+                .definitions
+                .iter()
+                .find(|own| own.symbol.name() == letter);
             let defined = defined
                 .expect("a definition")
                 .meaning
                 .evaluate(&values)
                 .expect("a number");
-            let printed = value_of(letter, &lines).evaluate(&values).expect("a number");
-            assert!((printed / defined - 1.0).abs() < 1e-12, "{letter}: {printed} {defined}");
+            let printed = value_of(letter, &lines)
+                .evaluate(&values)
+                .expect("a number");
+            assert!(
+                (printed / defined - 1.0).abs() < 1e-12,
+                "{letter}: {printed} {defined}"
+            );
         }
     }
 }
@@ -418,7 +476,12 @@ fn pade_shows_the_system_it_solves() {
         };
         let solution = solution(equation, &options);
         let lines = lines(&solution);
-        let mut values = numbers(&[("A", 0.9), ("eps", 0.4), ("k", 2.0), ("omega0", 2.0_f64.sqrt())]);
+        let mut values = numbers(&[
+            ("A", 0.9),
+            ("eps", 0.4),
+            ("k", 2.0),
+            ("omega0", 2.0_f64.sqrt()),
+        ]);
         for j in 1..=degrees.1 {
             let name = format!("q{j}");
             let value = value_of(&name, &lines).evaluate(&values).expect("a number");
@@ -448,7 +511,10 @@ fn pade_shows_the_system_it_solves() {
                 .split(" = ")
                 .map(|side| read(side).evaluate(&values).expect("a number"))
                 .collect();
-            assert!(sides.iter().all(|side| (side - sides[0]).abs() < 1e-13), "{line}");
+            assert!(
+                sides.iter().all(|side| (side - sides[0]).abs() < 1e-13),
+                "{line}"
+            );
             values.insert(Symbol::new(&format!("p{i}")), sides[0]);
         }
         // The quotient of the printed coefficients is the law.
@@ -507,7 +573,9 @@ fn iteration_perturbation_shows_what_it_freezes() {
                 if pass == 1 {
                     // The iterate satisfies it but for the secular term.
                     let next = value_of(&after, &lines);
-                    let left = 1.44 * (at(&derivative(&derivative(&next)), &values, theta) + at(&next, &values, theta));
+                    let left = 1.44
+                        * (at(&derivative(&derivative(&next)), &values, theta)
+                            + at(&next, &values, theta));
                     let sample = |k: u32| 2.0 * std::f64::consts::PI * f64::from(k) / 64.0;
                     let secular: f64 = (0..64)
                         .map(|k| at(&right, &values, sample(k)) * sample(k).cos())
@@ -521,7 +589,8 @@ fn iteration_perturbation_shows_what_it_freezes() {
     }
 }
 
-/// A derivation by one term leads to its law: the equation stands in it, beside what it follows from.
+/// A derivation by one term leads to its law: the equation stands in it, beside what it follows
+/// from.
 #[test]
 fn derivations_by_one_term_end_in_their_law() {
     for equation in [
@@ -552,15 +621,20 @@ fn derivations_by_one_term_end_in_their_law() {
             let formula = solution.formula();
             let (name, law) = formula.split_once(" = ").expect("a law");
             let lines = lines(&solution);
-            let found = lines
-                .iter()
-                .any(|line| line.contains(&format!("{name} = ")) && line.ends_with(&format!("= {law}")));
-            assert!(found, "{equation} by {}: {formula} in {lines:#?}", method.name());
+            let found = lines.iter().any(|line| {
+                line.contains(&format!("{name} = ")) && line.ends_with(&format!("= {law}"))
+            });
+            assert!(
+                found,
+                "{equation} by {}: {formula} in {lines:#?}",
+                method.name()
+            );
         }
     }
 }
 
-/// The bounds of max-min against a search through f(x)/x, where it is monotonic and where it is not.
+/// The bounds of max-min against a search through f(x)/x, where it is monotonic and where it is
+/// not.
 #[test]
 fn max_min_has_the_bounds_of_the_motion() {
     for (equation, turning) in [
@@ -569,24 +643,44 @@ fn max_min_has_the_bounds_of_the_motion() {
         ("x'' + x*abs(x) = 0", vec![]),
         ("x'' + x + x^3 - x^5 = 0", vec![0.5_f64.sqrt()]),
         ("x'' + x + x^3*exp(-x^2) = 0", vec![1.0]),
-        ("x'' + 1e12*x - 1e26*x^3 + 1e40*x^5 = 0", vec![0.5_f64.sqrt() * 1e-7]),
+        (
+            "x'' + 1e12*x - 1e26*x^3 + 1e40*x^5 = 0",
+            vec![0.5_f64.sqrt() * 1e-7],
+        ),
         (
             "x'' + x - 3*x^3 + 3*x^5 - x^7/2 = 0",
-            vec![f64::sqrt(2.0 - f64::sqrt(2.0)), f64::sqrt(2.0 + f64::sqrt(2.0))],
+            vec![
+                f64::sqrt(2.0 - f64::sqrt(2.0)),
+                f64::sqrt(2.0 + f64::sqrt(2.0)),
+            ],
         ),
     ] {
         let solution = solution(equation, &by(Method::MaxMin, 1));
         let lines = lines(&solution);
         let force = Oscillator::parse(equation).expect("an equation").force;
-        let quotient = |x: f64| force.evaluate(&BTreeMap::from([("x".into(), x)])).expect("a force") / x;
+        let quotient = |x: f64| {
+            force
+                .evaluate(&BTreeMap::from([("x".into(), x)]))
+                .expect("a force")
+                / x
+        };
         let scale = turning.first().copied().unwrap_or(1.0);
         let found: Vec<f64> = lines
             .iter()
-            .filter_map(|line| line.strip_prefix("x = ")?.split_once(": q turns back")?.0.parse().ok())
+            .filter_map(|line| {
+                line.strip_prefix("x = ")?
+                    .split_once(": q turns back")?
+                    .0
+                    .parse()
+                    .ok()
+            })
             .collect();
         assert_eq!(found.len(), turning.len(), "{equation}: {lines:#?}");
         for (found, expected) in found.iter().zip(&turning) {
-            assert!((found / expected - 1.0).abs() < 1e-4, "{equation}: {found} {expected}");
+            assert!(
+                (found / expected - 1.0).abs() < 1e-4,
+                "{equation}: {found} {expected}"
+            );
         }
         for part in [0.3, 0.9, 1.2, 1.8, 2.6] {
             let amplitude = part * scale;
@@ -633,7 +727,10 @@ fn max_min_has_the_bounds_of_the_motion() {
                 at.extend(numbers(&[("lo", lo), ("hi", hi)]));
                 let share = value_of("k", &lines).evaluate(&at).expect("a number");
                 let (from, to) = match passed {
-                    0 => (value_of("q_rest", &lines).evaluate(&at).expect("a number"), q_end),
+                    0 => (
+                        value_of("q_rest", &lines).evaluate(&at).expect("a number"),
+                        q_end,
+                    ),
                     _ => (lo, hi),
                 };
                 let mean = |i: u32| {
@@ -657,16 +754,25 @@ fn max_min_sees_narrow_dips() {
     for (centre, unit) in [(2.0535_f64, 1.0_f64), (7.3, 1.0), (2.0535, 1e-6)] {
         let square = centre * unit * unit;
         let (rise, sharp) = (0.01 / (unit * unit), 3e5 / unit.powi(4));
-        let equation = format!("x'' + x + {rise:e}*x^3 - x*exp(-{sharp:e}*(x^2 - {square:e})^2)/10 = 0");
+        let equation =
+            format!("x'' + x + {rise:e}*x^3 - x*exp(-{sharp:e}*(x^2 - {square:e})^2)/10 = 0");
         let lines = lines(&solution(&equation, &by(Method::MaxMin, 1)));
         let places = lines
             .iter()
             .filter_map(|line| line.strip_prefix("x = ")?.split_once(": q turns back"));
-        let places: Vec<f64> = places.map(|entry| entry.0.parse().expect("a number")).collect();
+        let places: Vec<f64> = places
+            .map(|entry| entry.0.parse().expect("a number"))
+            .collect();
         assert_eq!(places.len(), 2, "{equation}: {lines:#?}");
-        assert!((places[1] / square.sqrt() - 1.0).abs() < 1e-5, "{equation}: {places:?}");
         assert!(
-            lines.iter().any(|line| line.contains("the least is L2 = 0.92")) || centre > 3.0,
+            (places[1] / square.sqrt() - 1.0).abs() < 1e-5,
+            "{equation}: {places:?}"
+        );
+        assert!(
+            lines
+                .iter()
+                .any(|line| line.contains("the least is L2 = 0.92"))
+                || centre > 3.0,
             "{lines:#?}"
         );
     }
@@ -675,7 +781,8 @@ fn max_min_sees_narrow_dips() {
 /// With letters in several powers the condition is said, and for which signs it holds.
 #[test]
 fn max_min_says_on_what_its_bounds_depend() {
-    let bounds = |equation: &str| solution(equation, &by(Method::MaxMin, 1)).validity[0].to_string();
+    let bounds =
+        |equation: &str| solution(equation, &by(Method::MaxMin, 1)).validity[0].to_string();
     assert_eq!(
         bounds("x'' + x + eps*x^3 + k*x^5 = 0"),
         "omega^2 lies between 1 and 1 + eps*A^2 + k*A^4 while 2*eps*x + 4*k*x^3 keeps its sign for 0 < x < A, \
@@ -723,9 +830,18 @@ fn orders_and_corrections_have_names_of_their_own() {
         },
     );
     let (text, latex) = (text::steps(&solution), latex::steps(&solution));
-    assert!(text.contains("W_1 = 3*eps*W1*A^2/4 + 5*eps*y2*A^4/8"), "{text}");
-    assert!(text.contains("y_0'' + y_0 = 0") && !text.contains("y0"), "{text}");
-    assert!(!latex.contains("y_{0}''") && latex.contains("W_{1} A^{2}"), "{latex}");
+    assert!(
+        text.contains("W_1 = 3*eps*W1*A^2/4 + 5*eps*y2*A^4/8"),
+        "{text}"
+    );
+    assert!(
+        text.contains("y_0'' + y_0 = 0") && !text.contains("y0"),
+        "{text}"
+    );
+    assert!(
+        !latex.contains("y_{0}''") && latex.contains("W_{1} A^{2}"),
+        "{latex}"
+    );
 }
 
 /// What prints as text prints as LaTeX: formulas, not comments.
@@ -746,7 +862,11 @@ fn no_method_leaves_its_derivation_in_comments() {
                 continue;
             };
             let (text, latex) = (text::steps(&solution), latex::steps(&solution));
-            assert!(text.lines().count() > 2, "{equation} by {}: {text}", method.name());
+            assert!(
+                text.lines().count() > 2,
+                "{equation} by {}: {text}",
+                method.name()
+            );
             assert!(!latex.contains('%'), "{latex}");
             assert!(
                 latex.matches("&=").count() >= 2,

@@ -1,4 +1,5 @@
-//! Steady states of oscillators that meet stops, against the exact motion from piece to piece of a spring in pieces, and shooting with it.
+//! Steady states of oscillators that meet stops, against the exact motion from piece to piece of a
+//! spring in pieces, and shooting with it.
 
 use lindstedt::response::bifurcation::BifurcationKind;
 use lindstedt::response::{Point, Question, Response, respond};
@@ -8,8 +9,8 @@ fn response(equation: &str, range: [f64; 2], values: &str) -> Response {
     respond(&Question::new(equation, "Omega", range, values).expect(equation)).expect(equation)
 }
 
-/// `x'' + c x' + k x + sum of stiffness (x - at) beyond the stops = F cos(Omega t)`; a stop at a positive place stands on the right, one at
-/// a negative place on the left.
+/// `x'' + c x' + k x + sum of stiffness (x - at) beyond the stops = F cos(Omega t)`; a stop at a
+/// positive place stands on the right, one at a negative place on the left.
 struct Pieces<'a> {
     damping: f64,
     drive: f64,
@@ -20,12 +21,21 @@ struct Pieces<'a> {
 
 impl Pieces<'_> {
     fn touches(&self, x: f64) -> Vec<bool> {
-        self.stops.iter().map(|[at, _]| x * at.signum() > at.abs()).collect()
+        self.stops
+            .iter()
+            .map(|[at, _]| x * at.signum() > at.abs())
+            .collect()
     }
 
-    /// The state some time after another one, as long as these stops are touched: the closed form of a linear oscillator.
+    /// The state some time after another one, as long as these stops are touched: the closed form
+    /// of a linear oscillator.
     fn after(&self, touched: &[bool], [x, v]: [f64; 2], from: f64, time: f64) -> [f64; 2] {
-        let active = || self.stops.iter().zip(touched).filter(|(_, touched)| **touched);
+        let active = || {
+            self.stops
+                .iter()
+                .zip(touched)
+                .filter(|(_, touched)| **touched)
+        };
         let stiffness = 1.0 + active().map(|([_, k], _)| k).sum::<f64>();
         let offset = active().map(|([at, k], _)| k * at).sum::<f64>() / stiffness;
         let (w, c) = (self.omega, self.damping);
@@ -60,7 +70,8 @@ impl Pieces<'_> {
             let (mut time, end) = (step * f64::from(index), step * f64::from(index + 1));
             loop {
                 // A hair on, so that what stands on a stop is counted where it goes.
-                let touched = self.touches(self.after(&self.touches(state[0]), state, time, 1e-9)[0]);
+                let touched =
+                    self.touches(self.after(&self.touches(state[0]), state, time, 1e-9)[0]);
                 let within = |until: f64| {
                     let there = self.after(&touched, state, time, until - time);
                     (there, self.touches(there[0]) == touched)
@@ -90,13 +101,24 @@ impl Pieces<'_> {
     fn holds(&self, point: &Point) {
         let (end, peak) = self.period(point.start);
         let missed = (end[0] - point.start[0]).hypot(end[1] - point.start[1]);
-        let largest = point.multipliers.map_or(1.0, |multipliers| multipliers[0].norm());
-        assert!(missed < 1e-6 * largest.max(1.0), "{} {missed}", point.parameter);
-        assert!((point.peak / peak - 1.0).abs() < 2e-3, "{} {peak}", point.parameter);
+        let largest = point
+            .multipliers
+            .map_or(1.0, |multipliers| multipliers[0].norm());
+        assert!(
+            missed < 1e-6 * largest.max(1.0),
+            "{} {missed}",
+            point.parameter
+        );
+        assert!(
+            (point.peak / peak - 1.0).abs() < 2e-3,
+            "{} {peak}",
+            point.parameter
+        );
     }
 }
 
-/// A spring that grows stiffer at a stop has no jump, however it is written: one branch of harmonic balance, from end to end of the range.
+/// A spring that grows stiffer at a stop has no jump, however it is written: one branch of harmonic
+/// balance, from end to end of the range.
 #[test]
 fn a_stop_is_no_jump_of_the_force() {
     let one: &[[f64; 2]] = &[[0.5, 20.0]];
@@ -136,7 +158,8 @@ fn a_stop_is_no_jump_of_the_force() {
 /// A mass that meets a hard stop, by Hertz's law.
 const CONTACT: &str = "x'' + 0.2*x' + x + 1e4*(x - 0.5)^(3/2)*H(x - 0.5) = F*cos(Omega*t)";
 
-/// State and half of peak to peak of the same under F = 0.3 after so many periods, by the classical method of Runge and Kutta.
+/// State and half of peak to peak of the same under F = 0.3 after so many periods, by the classical
+/// method of Runge and Kutta.
 fn in_contact(omega: f64, start: [f64; 2], periods: u32) -> ([f64; 2], f64) {
     const STEPS: u32 = 4000;
     let step = std::f64::consts::TAU / omega / f64::from(STEPS);
@@ -144,7 +167,8 @@ fn in_contact(omega: f64, start: [f64; 2], periods: u32) -> ([f64; 2], f64) {
         let force = 1e4 * (x - 0.5).max(0.0).powf(1.5);
         [v, 0.3 * (omega * t).cos() - 0.2 * v - x - force]
     };
-    let moved = |[x, v]: [f64; 2], by: f64, [x_rate, v_rate]: [f64; 2]| [x + by * x_rate, v + by * v_rate];
+    let moved =
+        |[x, v]: [f64; 2], by: f64, [x_rate, v_rate]: [f64; 2]| [x + by * x_rate, v + by * v_rate];
     let mut state = start;
     let mut extent = [0.0; 2];
     for _ in 0..periods {
@@ -164,7 +188,8 @@ fn in_contact(omega: f64, start: [f64; 2], periods: u32) -> ([f64; 2], f64) {
     (state, 0.5 * (extent[1] - extent[0]))
 }
 
-/// The motion in contact jumps down at one frequency, and has one fold there however the truncated balance waves about it.
+/// The motion in contact jumps down at one frequency, and has one fold there however the truncated
+/// balance waves about it.
 #[test]
 fn ripple_of_the_balance_is_no_fold() {
     let question = Question::new(CONTACT, "Omega", [1.4, 1.7], "F = 3/10").expect("a question");
@@ -178,15 +203,28 @@ fn ripple_of_the_balance_is_no_fold() {
         .iter()
         .filter(|found| found.kind == BifurcationKind::Fold);
     let folds: Vec<f64> = folds.map(|fold| fold.parameter).collect();
-    // A simulation that is led up the branch stays on it at the first of these, and falls from it at the second.
+    // A simulation that is led up the branch stays on it at the first of these, and falls from it
+    // at the second.
     let (mut state, mut peaks) = ([-0.6, 0.8], vec![]);
-    for (omega, periods) in [(1.4, 150), (1.5, 100), (1.55, 100), (1.5605, 150), (1.5625, 400)] {
+    for (omega, periods) in [
+        (1.4, 150),
+        (1.5, 100),
+        (1.55, 100),
+        (1.5605, 150),
+        (1.5625, 400),
+    ] {
         let peak;
         (state, peak) = in_contact(omega, state, periods);
         peaks.push(peak);
     }
-    assert!(peaks[..4].iter().all(|peak| *peak > 0.7) && peaks[4] < 0.3, "{peaks:?}");
-    assert!(folds.len() == 1 && (1.5605..1.5625).contains(&folds[0]), "{folds:?}");
+    assert!(
+        peaks[..4].iter().all(|peak| *peak > 0.7) && peaks[4] < 0.3,
+        "{peaks:?}"
+    );
+    assert!(
+        folds.len() == 1 && (1.5605..1.5625).contains(&folds[0]),
+        "{folds:?}"
+    );
     // The branch waves, and says so.
     assert!(
         found
@@ -195,7 +233,8 @@ fn ripple_of_the_balance_is_no_fold() {
     );
 }
 
-/// A motion on which simulations settle is followed by as many harmonics as it takes; by fewer it is said to be missing, and nothing passes.
+/// A motion on which simulations settle is followed by as many harmonics as it takes; by fewer it
+/// is said to be missing, and nothing passes.
 #[test]
 fn a_motion_that_few_harmonics_do_not_say_is_not_missed() {
     let found = response(CONTACT, [1.3, 1.5], "F = 3/10");

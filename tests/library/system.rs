@@ -1,5 +1,5 @@
-//! First-order systems followed by their Taylor series and by Runge-Kutta, against elliptic functions, exact orbits, conserved
-//! energies, and each other.
+//! First-order systems followed by their Taylor series and by Runge-Kutta, against elliptic
+//! functions, exact orbits, conserved energies, and each other.
 
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
@@ -39,7 +39,11 @@ fn runge_kutta() -> Options {
 
 /// By Taylor series and by Runge-Kutta.
 fn by_both(system: &System, start: &[f64], end: f64, events: &[Event]) -> [Path; 2] {
-    [Options::default(), runge_kutta()].map(|options| system.solve(0.0, start, end, events, &options).expect("a path"))
+    [Options::default(), runge_kutta()].map(|options| {
+        system
+            .solve(0.0, start, end, events, &options)
+            .expect("a path")
+    })
 }
 
 #[test]
@@ -58,33 +62,52 @@ fn the_pendulum_is_its_elliptic_function_at_every_time() {
     assert!(path.at(-0.1).is_none() && path.at(100.1).is_none() && path.at(f64::NAN).is_none());
 }
 
-/// Two equal links of length and mass one: angles from the vertical, `c = cos(a - b)`, accelerations from the Lagrangian.
+/// Two equal links of length and mass one: angles from the vertical, `c = cos(a - b)`,
+/// accelerations from the Lagrangian.
 #[test]
 fn two_links_keep_their_energy() {
     let divisor = "(2 - cos(a - b)^2)";
-    let first = format!("(-2*sin(a) + cos(a - b)*sin(b) - sin(a - b)*(q^2 + cos(a - b)*p^2))/{divisor}");
-    let second = format!("(2*cos(a - b)*sin(a) - 2*sin(b) + sin(a - b)*(2*p^2 + cos(a - b)*q^2))/{divisor}");
+    let first =
+        format!("(-2*sin(a) + cos(a - b)*sin(b) - sin(a - b)*(q^2 + cos(a - b)*p^2))/{divisor}");
+    let second =
+        format!("(2*cos(a - b)*sin(a) - 2*sin(b) + sin(a - b)*(2*p^2 + cos(a - b)*q^2))/{divisor}");
     let links = system(&["a", "b", "p", "q"], &["p", "q", &first, &second], &[]).unwrap();
-    let vertical = [Event::record(expression("a")), Event::record(expression("a - 3/2"))];
+    let vertical = [
+        Event::record(expression("a")),
+        Event::record(expression("a - 3/2")),
+    ];
     let energy = |y: &[f64]| {
         let [a, b, p, q] = [y[0], y[1], y[2], y[3]];
         p * p + 0.5 * q * q + (a - b).cos() * p * q - 2.0 * a.cos() - b.cos()
     };
     // Small, large, and one that tumbles over.
-    for start in [[0.1, 0.1, 0.0, 0.0], [1.5, -0.5, 0.0, 0.0], [2.5, 2.0, 0.5, -1.0]] {
+    for start in [
+        [0.1, 0.1, 0.0, 0.0],
+        [1.5, -0.5, 0.0, 0.0],
+        [2.5, 2.0, 0.5, -1.0],
+    ] {
         let [path, other] = by_both(&links, &start, 50.0, &vertical);
-        assert_eq!((path.reason(), other.reason()), (End::Reached, End::Reached));
+        assert_eq!(
+            (path.reason(), other.reason()),
+            (End::Reached, End::Reached)
+        );
         assert!(other.step_count() > path.step_count());
         let before = energy(&start);
         for i in 0..=500 {
-            let [state, judged] = [&path, &other].map(|path| path.at(0.1 * f64::from(i)).expect("a state"));
+            let [state, judged] =
+                [&path, &other].map(|path| path.at(0.1 * f64::from(i)).expect("a state"));
             for (state, kept) in [(&state, 1e-12), (&judged, 1e-11)] {
                 let drift = energy(state) - before;
                 assert!(drift.abs() < kept, "{start:?} at {i}: {drift:e}");
             }
-            // Both are right as far as the motion lets errors grow: the one that tumbles is chaotic.
+            // Both are right as far as the motion lets errors grow: the one that tumbles is
+            // chaotic.
             let time = 0.1 * f64::from(i);
-            let allowed = if start[0] < 2.0 { 1e-10 } else { 1e-11 * time.exp() };
+            let allowed = if start[0] < 2.0 {
+                1e-10
+            } else {
+                1e-11 * time.exp()
+            };
             for (value, expected) in judged.iter().zip(&state).filter(|_| allowed < 1e-4) {
                 assert!(
                     (value - expected).abs() < allowed,
@@ -102,7 +125,10 @@ fn two_links_keep_their_energy() {
                 .collect()
         };
         let (met, judged) = (met(&path), met(&other));
-        assert!(met.len() == judged.len() && met.len() > 5, "{met:?} {judged:?}");
+        assert!(
+            met.len() == judged.len() && met.len() > 5,
+            "{met:?} {judged:?}"
+        );
         for (met, judged) in met.iter().zip(judged) {
             assert_eq!((met.event, met.rising), (judged.event, judged.rising));
             assert!((met.time - judged.time).abs() < 1e-4, "{met:?} {judged:?}");
@@ -112,7 +138,12 @@ fn two_links_keep_their_energy() {
     for sign in [1.0, -1.0] {
         let size = 1e-6;
         let period = TAU / (2.0 - sign * 2.0_f64.sqrt()).sqrt();
-        let path = follow(&links, &[size, sign * 2.0_f64.sqrt() * size, 0.0, 0.0], period, &[]);
+        let path = follow(
+            &links,
+            &[size, sign * 2.0_f64.sqrt() * size, 0.0, 0.0],
+            period,
+            &[],
+        );
         let end = path.at(path.end()).expect("a state");
         assert!((end[0] / size - 1.0).abs() < 1e-9, "{end:?}");
     }
@@ -161,10 +192,19 @@ fn a_corner_is_met_and_left_where_it_is() {
         "min(-x, -(1 + k)*x)",
     ] {
         let bilinear = system(&["x", "v"], &["v", right], &[("k", 3.0)]).unwrap();
-        for path in by_both(&bilinear, &[-1.0, 0.0], 100.0, &[Event::stop(expression("v"))]) {
+        for path in by_both(
+            &bilinear,
+            &[-1.0, 0.0],
+            100.0,
+            &[Event::stop(expression("v"))],
+        ) {
             assert_eq!(path.reason(), End::Event(0));
             // From -1 up to the corner in a quarter of 2 pi, on to rest at 1/2 in a quarter of pi.
-            assert!((path.end() - 0.75 * PI).abs() < 1e-12, "{right}: {}", path.end());
+            assert!(
+                (path.end() - 0.75 * PI).abs() < 1e-12,
+                "{right}: {}",
+                path.end()
+            );
             assert!((path.at(path.end()).expect("a state")[0] - 0.5).abs() < 1e-13);
         }
     }
@@ -179,7 +219,8 @@ fn a_corner_is_met_and_left_where_it_is() {
     }
 }
 
-/// The same bilinear spring in any units: a hundred half swings of a quadrillionth of a second are no standstill.
+/// The same bilinear spring in any units: a hundred half swings of a quadrillionth of a second are
+/// no standstill.
 #[test]
 fn corners_are_met_in_any_units() {
     for (omega, length) in [(1e15, 1e-12), (1.0, 1.0), (1e-12, 1e15)] {
@@ -200,20 +241,27 @@ fn corners_are_met_in_any_units() {
             );
             let end = path.at(path.end()).expect("a state");
             assert!((end[0] / length + 1.0).abs() < 1e-10, "{omega} {end:?}");
-            let turns = path.occurrences().iter().filter(|met| met.time < 49.9 * period);
+            let turns = path
+                .occurrences()
+                .iter()
+                .filter(|met| met.time < 49.9 * period);
             assert_eq!(turns.count(), 99, "{omega}");
         }
     }
 }
 
-/// A contact has no value on the near side: x^(3/2) from the touch on. The rebound is as fast as the touch, and the depth is
-/// that of the energy, 1/2 = 2/5 k d^(5/2).
+/// A contact has no value on the near side: x^(3/2) from the touch on. The rebound is as fast as
+/// the touch, and the depth is that of the energy, 1/2 = 2/5 k d^(5/2).
 #[test]
 fn a_contact_is_gated_by_its_step() {
     let contact = system(&["x", "v"], &["v", "-k*x^(3/2)*H(x)"], &[("k", 1e6)]).unwrap();
-    let events = [Event::record(expression("v")), Event::stop(expression("x + 1/2"))];
+    let events = [
+        Event::record(expression("v")),
+        Event::stop(expression("x + 1/2")),
+    ];
     for path in by_both(&contact, &[-0.4, 1.0], 10.0, &events) {
-        // In time the contact has no series at the touch and the release: the series may end there, and says so.
+        // In time the contact has no series at the touch and the release: the series may end there,
+        // and says so.
         if path.reason() == End::Singular && path.step_count() < 200 {
             assert!(path.at(path.end()).expect("a state")[0].abs() < 1e-12);
             continue;
@@ -227,24 +275,35 @@ fn a_contact_is_gated_by_its_step() {
             .find(|met| met.event == 0)
             .expect("a turning point");
         let depth = path.at(deepest.time).expect("a state")[0];
-        assert!((depth / 1.25e-6_f64.powf(0.4) - 1.0).abs() < 1e-8, "{depth}");
+        assert!(
+            (depth / 1.25e-6_f64.powf(0.4) - 1.0).abs() < 1e-8,
+            "{depth}"
+        );
     }
 }
 
 /// Euler's free body in an array: three states, two constants, and the same by expressions.
 #[test]
 fn any_number_of_states_by_a_closure() {
-    let spin = |_: f64, w: &[f64; 3], rates: &mut [f64; 3]| *rates = [-w[1] * w[2], 2.0 * w[0] * w[2], -w[0] * w[1]];
+    let spin = |_: f64, w: &[f64; 3], rates: &mut [f64; 3]| {
+        *rates = [-w[1] * w[2], 2.0 * w[0] * w[2], -w[0] * w[1]]
+    };
     let start = [0.1, 1.0, 0.2];
     let options = ode::Options::with_tolerance(1e-13);
     let turned = ode::Event::new(|point: &Point<[f64; 3]>| point.y[1], ode::Action::Record);
-    let path = integrate_first_order(spin, Point { t: 0.0, y: start }, 40.0, &[turned], &options).expect("a path");
+    let path = integrate_first_order(spin, Point { t: 0.0, y: start }, 40.0, &[turned], &options)
+        .expect("a path");
     let by_name = system(&["a", "b", "c"], &["-b*c", "2*a*c", "-a*b"], &[]).unwrap();
     let series = follow(&by_name, &start, 40.0, &[Event::record(expression("b"))]);
     let times = |index: usize| series.occurrences()[index].time;
-    assert!(series.occurrences().len() >= 4 && path.occurrences().len() == series.occurrences().len());
+    assert!(
+        series.occurrences().len() >= 4 && path.occurrences().len() == series.occurrences().len()
+    );
     for (index, met) in path.occurrences().iter().enumerate() {
-        assert!((met.state.t - times(index)).abs() < 1e-10 && met.rising == series.occurrences()[index].rising);
+        assert!(
+            (met.state.t - times(index)).abs() < 1e-10
+                && met.rising == series.occurrences()[index].rising
+        );
     }
     for point in path.samples(101) {
         let [a, b, c] = point.y;
@@ -255,8 +314,12 @@ fn any_number_of_states_by_a_closure() {
     }
     assert!(path.state_at(40.1).is_none());
     let nowhere = |_: f64, w: &[f64; 3], rates: &mut [f64; 3]| *rates = [0.0, (-w[0]).sqrt(), 0.0];
-    let refused = integrate_first_order(nowhere, Point { t: 0.0, y: start }, 1.0, &[], &options).unwrap_err();
-    assert_eq!(refused, ode::IntegrationError::RateNotFinite { index: 1, t: 0.0 });
+    let refused =
+        integrate_first_order(nowhere, Point { t: 0.0, y: start }, 1.0, &[], &options).unwrap_err();
+    assert_eq!(
+        refused,
+        ode::IntegrationError::RateNotFinite { index: 1, t: 0.0 }
+    );
     let refused = integrate_first_order(
         spin,
         Point {
@@ -278,7 +341,12 @@ fn any_number_of_states_by_a_closure() {
 #[test]
 fn fast_events_and_corners_are_all_met() {
     let even = system(&["x"], &["1"], &[]).unwrap();
-    for path in by_both(&even, &[0.001], 10.0, &[Event::record(expression("sin(100*x)"))]) {
+    for path in by_both(
+        &even,
+        &[0.001],
+        10.0,
+        &[Event::record(expression("sin(100*x)"))],
+    ) {
         assert_eq!(path.occurrences().len(), 318);
         for (index, met) in path.occurrences().iter().enumerate() {
             let time = (index + 1) as f64 * PI / 100.0 - 0.001;
@@ -289,10 +357,18 @@ fn fast_events_and_corners_are_all_met() {
         }
     }
     // Up on one half of every period, down on the other; and twice as long up as down.
-    let square = system(&["x", "y"], &["sgn(sin(50*t))", "sgn(sin(50*t) + 1/2)"], &[]).unwrap();
+    let square = system(
+        &["x", "y"],
+        &["sgn(sin(50*t))", "sgn(sin(50*t) + 1/2)"],
+        &[],
+    )
+    .unwrap();
     for path in by_both(&square, &[0.0, 0.0], TAU, &[]) {
         let end = path.at(TAU).expect("a state");
-        assert!(end[0].abs() < 1e-11 && (end[1] - TAU / 3.0).abs() < 1e-11, "{end:?}");
+        assert!(
+            end[0].abs() < 1e-11 && (end[1] - TAU / 3.0).abs() < 1e-11,
+            "{end:?}"
+        );
     }
     // A late start costs no digits.
     let bilinear = system(&["x", "v"], &["v", "-x - 3*x*H(x)"], &[]).unwrap();
@@ -301,21 +377,43 @@ fn fast_events_and_corners_are_all_met() {
             .solve(1e6, &[-1.0, 0.0], 1e6 + 1.5 * PI * 20.0, &[], &options)
             .expect("a path");
         let end = path.at(path.end()).expect("a state");
-        assert!((end[0] + 1.0).abs() < 1e-10 && end[1].abs() < 1e-8, "{end:?}");
+        assert!(
+            (end[0] + 1.0).abs() < 1e-10 && end[1].abs() < 1e-8,
+            "{end:?}"
+        );
     }
 }
 
-/// Saturation with |x| = 1 as an event as well: where the corner is, rounding may put the event on either side of it.
+/// Saturation with |x| = 1 as an event as well: where the corner is, rounding may put the event on
+/// either side of it.
 #[test]
 fn an_event_on_a_corner_is_met_once() {
     let saturated = system(&["x", "v"], &["v", "-min(max(x, -1), 1)"], &[]).unwrap();
-    let events = [Event::record(expression("x")), Event::record(expression("abs(x) - 1"))];
+    let events = [
+        Event::record(expression("x")),
+        Event::record(expression("abs(x) - 1")),
+    ];
     // Parabolas from 3 to 1 in two units, a sine from there to -1 in 2 atan(1/2).
     let (fall, swing) = (2.0, 2.0 * 0.5_f64.atan());
-    for path in by_both(&saturated, &[3.0, 0.0], 40.0 * (2.0 * fall + swing), &events) {
-        let count = |event: usize| path.occurrences().iter().filter(|met| met.event == event).count();
+    for path in by_both(
+        &saturated,
+        &[3.0, 0.0],
+        40.0 * (2.0 * fall + swing),
+        &events,
+    ) {
+        let count = |event: usize| {
+            path.occurrences()
+                .iter()
+                .filter(|met| met.event == event)
+                .count()
+        };
         assert_eq!((count(0), count(1)), (40, 80), "{:?}", path.occurrences());
-        for (index, met) in path.occurrences().iter().filter(|met| met.event == 1).enumerate() {
+        for (index, met) in path
+            .occurrences()
+            .iter()
+            .filter(|met| met.event == 1)
+            .enumerate()
+        {
             let halves = (index / 2) as f64 * (2.0 * fall + swing);
             let time = halves + fall + if index % 2 == 1 { swing } else { 0.0 };
             assert!(
@@ -333,24 +431,34 @@ fn an_event_on_a_corner_is_met_once() {
     for path in by_both(&bounce, &[0.0, 1.0], 9.0, &[Event::record(expression("x"))]) {
         assert_eq!((path.reason(), path.occurrences().len()), (End::Reached, 4));
         let end = path.at(9.0).expect("a state");
-        assert!((end[0] - 0.5).abs() < 1e-11 && end[1].abs() < 1e-11, "{end:?}");
+        assert!(
+            (end[0] - 0.5).abs() < 1e-11 && end[1].abs() < 1e-11,
+            "{end:?}"
+        );
     }
 }
 
-/// Dry friction takes twice its bound of the amplitude in every half swing, and holds where the spring is weaker.
+/// Dry friction takes twice its bound of the amplitude in every half swing, and holds where the
+/// spring is weaker.
 #[test]
 fn dry_friction_stops_the_motion_where_it_holds() {
     let slider = system(&["x", "v"], &["v", "-x - mu*sgn(v)"], &[("mu", 0.1)]).unwrap();
-    for path in by_both(&slider, &[-1.05, 0.0], 100.0, &[Event::record(expression("v"))]) {
+    for path in by_both(
+        &slider,
+        &[-1.05, 0.0],
+        100.0,
+        &[Event::record(expression("v"))],
+    ) {
         assert_eq!(path.reason(), End::Sticks);
-        // 1.05 -> 0.85 -> 0.65 -> 0.45 -> 0.25 -> 0.05, which is less than 0.1: five half swings of time pi.
+        // 1.05 -> 0.85 -> 0.65 -> 0.45 -> 0.25 -> 0.05, which is less than 0.1: five half swings of
+        // time pi.
         assert!((path.end() - 5.0 * PI).abs() < 1e-11, "{}", path.end());
         assert!((path.at(path.end()).expect("a state")[0] - 0.05).abs() < 1e-11);
     }
 }
 
-/// An event that counts in one direction is met in that direction alone, also where it starts at its zero and where rounding makes it leave
-/// it on the wrong side first.
+/// An event that counts in one direction is met in that direction alone, also where it starts at
+/// its zero and where rounding makes it leave it on the wrong side first.
 #[test]
 fn an_event_may_count_in_one_direction() {
     let wave = system(&["x", "v"], &["v", "-x"], &[]).unwrap();
@@ -361,7 +469,11 @@ fn an_event_may_count_in_one_direction() {
         (Event::stop(expression("v")).rising(), PI),
     ] {
         for path in by_both(&wave, &[1.0, 0.0], 10.0, std::slice::from_ref(&event)) {
-            assert!((path.end() - end).abs() < 1e-11, "{event:?}: {}", path.end());
+            assert!(
+                (path.end() - end).abs() < 1e-11,
+                "{event:?}: {}",
+                path.end()
+            );
         }
     }
     // x = t^2/2 - 1e-17 t: it dips below zero for 2e-17.
@@ -384,7 +496,10 @@ fn what_cannot_be_followed_is_said() {
         system(&["x"], &["k*x"], &[]).expect_err("an unknown name"),
         SystemError::Expression(RecurrenceError::Unknown("k".into()))
     );
-    assert!(matches!(system(&["x"], &[], &[]), Err(SystemError::Length { .. })));
+    assert!(matches!(
+        system(&["x"], &[], &[]),
+        Err(SystemError::Length { .. })
+    ));
     // A corner inside a jump would keep a side that is no longer its own.
     for jumps in ["max(H(x), 1/2)", "1 - abs(1 + 2*sgn(x))"] {
         let refused = system(&["x"], &[jumps], &[]).expect_err(jumps);
@@ -395,16 +510,36 @@ fn what_cannot_be_followed_is_said() {
     let root = system(&["x"], &["sqrt(x)"], &[]).unwrap();
     for options in [Options::default(), runge_kutta()] {
         let refused = unsigned.solve(0.0, &[-1.0], 1.0, &[], &options);
-        assert_eq!(refused.expect_err("no logarithm"), SystemError::Start("x".into()));
+        assert_eq!(
+            refused.expect_err("no logarithm"),
+            SystemError::Start("x".into())
+        );
         let refused = root.solve(0.0, &[-1.0], 1.0, &[], &options);
-        assert_eq!(refused.expect_err("no root"), SystemError::Start("x".into()));
-        let refused = root.solve(0.0, &[1.0], 1.0, &[Event::record(expression("y"))], &options);
+        assert_eq!(
+            refused.expect_err("no root"),
+            SystemError::Start("x".into())
+        );
+        let refused = root.solve(
+            0.0,
+            &[1.0],
+            1.0,
+            &[Event::record(expression("y"))],
+            &options,
+        );
         let unknown = SystemError::Expression(RecurrenceError::Unknown("y".into()));
         assert_eq!(refused.expect_err("an unknown name"), unknown);
-        let refused = root.solve(0.0, &[1.0], 1.0, &[Event::record(expression("log(x - 9)"))], &options);
+        let refused = root.solve(
+            0.0,
+            &[1.0],
+            1.0,
+            &[Event::record(expression("log(x - 9)"))],
+            &options,
+        );
         assert_eq!(refused.expect_err("no logarithm"), SystemError::Event(0));
         // Without a way to go the start is all there is.
-        let path = root.solve(2.0, &[1.0], 2.0, &[], &options).expect("a start");
+        let path = root
+            .solve(2.0, &[1.0], 2.0, &[], &options)
+            .expect("a start");
         assert_eq!(
             (path.end(), path.reason(), path.at(2.0)),
             (2.0, End::Reached, Some(vec![1.0]))
@@ -425,11 +560,14 @@ fn what_cannot_be_followed_is_said() {
         step_limit: 3,
         ..Options::default()
     };
-    let path = pole.solve(0.0, &[1e-3], 900.0, &[], &short).expect("a part");
+    let path = pole
+        .solve(0.0, &[1e-3], 900.0, &[], &short)
+        .expect("a part");
     assert_eq!((path.reason(), path.step_count()), (End::StepLimit, 3));
 }
 
-/// `x'' = x` from rest at one: x = cosh(t), which is 1e300 at ln(2e300). There either integrator ends, with numbers; a pole is no such end.
+/// `x'' = x` from rest at one: x = cosh(t), which is 1e300 at ln(2e300). There either integrator
+/// ends, with numbers; a pole is no such end.
 #[test]
 fn a_state_that_leaves_the_range_of_numbers_ends_the_path() {
     let growing = system(&["x", "v"], &["v", "x"], &[]).unwrap();
@@ -437,9 +575,16 @@ fn a_state_that_leaves_the_range_of_numbers_ends_the_path() {
     let events = [Event::record(expression("x - 1e10"))];
     for path in by_both(&growing, &[1.0, 0.0], 1000.0, &events) {
         assert_eq!(path.reason(), End::Overflow);
-        assert!((path.end() - expected).abs() < 1e-7, "{} {expected}", path.end());
+        assert!(
+            (path.end() - expected).abs() < 1e-7,
+            "{} {expected}",
+            path.end()
+        );
         let last = path.at(path.end()).expect("a state");
-        assert!(last.iter().all(|value| (value / 1e300 - 1.0).abs() < 1e-6), "{last:?}");
+        assert!(
+            last.iter().all(|value| (value / 1e300 - 1.0).abs() < 1e-6),
+            "{last:?}"
+        );
         assert_eq!(path.occurrences().len(), 1);
     }
     // In time to be followed to its end.
@@ -467,14 +612,16 @@ fn a_state_that_leaves_the_range_of_numbers_ends_the_path() {
                 integrator,
                 ..Options::default()
             };
-            let refused = growing.solve(0.0, &[start, 0.0], 1.0, &[], &options).unwrap_err();
+            let refused = growing
+                .solve(0.0, &[start, 0.0], 1.0, &[], &options)
+                .unwrap_err();
             assert_eq!(refused, SystemError::Large("x".into(), start));
         }
     }
 }
 
-/// Corners with other arguments at the same place, and one that is another turned round: from x = 1 the force is 4 x on the right and x on the
-/// left, so that the motion comes back after pi/2 + pi.
+/// Corners with other arguments at the same place, and one that is another turned round: from x = 1
+/// the force is 4 x on the right and x on the left, so that the motion comes back after pi/2 + pi.
 #[test]
 fn corners_at_the_same_place_are_all_switched() {
     let forces = [
@@ -489,9 +636,15 @@ fn corners_at_the_same_place_are_all_switched() {
         let period = 1.5 * std::f64::consts::PI;
         for path in by_both(&system, &[1.0, 0.0], 3.0 * period, &[]) {
             assert_eq!(path.reason(), End::Reached, "{force}");
-            for (time, expected) in [(1.0 / 6.0, [0.0, -2.0]), (2.0, [1.0, 0.0]), (3.0, [1.0, 0.0])] {
+            for (time, expected) in [
+                (1.0 / 6.0, [0.0, -2.0]),
+                (2.0, [1.0, 0.0]),
+                (3.0, [1.0, 0.0]),
+            ] {
                 let state = path.at(time * period).expect("a state");
-                let astray = (state[0] - expected[0]).abs().max((state[1] - expected[1]).abs());
+                let astray = (state[0] - expected[0])
+                    .abs()
+                    .max((state[1] - expected[1]).abs());
                 assert!(astray < 1e-9, "{force}: {state:?} after {time} periods");
             }
         }
@@ -504,7 +657,9 @@ fn a_loose_tolerance_is_followed_to_the_end() {
     type Motion<'a> = (&'a [&'a str; 2], [f64; 2], fn(f64) -> f64);
     let motions: [Motion; 3] = [
         (&["v", "-x"], [0.0, 1.0], f64::sin),
-        (&["v", "-x + 3*x/4/(1 + x^2/1e9)"], [1.0, 0.0], |t| (0.5 * t).cos()),
+        (&["v", "-x + 3*x/4/(1 + x^2/1e9)"], [1.0, 0.0], |t| {
+            (0.5 * t).cos()
+        }),
         (&["1", "3*x^2"], [0.0, 0.0], |t| t),
     ];
     for (right, start, exact) in motions {
@@ -514,7 +669,9 @@ fn a_loose_tolerance_is_followed_to_the_end() {
                 tolerance,
                 ..Options::default()
             };
-            let path = system.solve(0.0, &start, 20.0, &[], &options).expect("a path");
+            let path = system
+                .solve(0.0, &start, 20.0, &[], &options)
+                .expect("a path");
             assert_eq!(
                 (path.end(), path.reason()),
                 (20.0, End::Reached),
@@ -526,7 +683,10 @@ fn a_loose_tolerance_is_followed_to_the_end() {
                 path.step_count()
             );
             let error = (path.at(20.0).expect("a state")[0] - exact(20.0)).abs();
-            assert!(error < 100.0 * tolerance + 1e-6, "{right:?} {tolerance}: {error}");
+            assert!(
+                error < 100.0 * tolerance + 1e-6,
+                "{right:?} {tolerance}: {error}"
+            );
         }
     }
 }

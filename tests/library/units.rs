@@ -1,4 +1,5 @@
-//! An impact in SI units: against a motion that is followed in seconds and metres, and what is said of bodies and of the paper.
+//! An impact in SI units: against a motion that is followed in seconds and metres, and what is said
+//! of bodies and of the paper.
 
 use std::process::Command;
 
@@ -23,7 +24,8 @@ struct Pendulum {
     stiffness: f64,
 }
 
-/// Time to contact, speed, penetration, duration, period and peak force, each in SI units, of the paper's release and barrier.
+/// Time to contact, speed, penetration, duration, period and peak force, each in SI units, of the
+/// paper's release and barrier.
 fn followed(pendulum: &Pendulum) -> [f64; 6] {
     let &Pendulum {
         mass,
@@ -39,10 +41,27 @@ fn followed(pendulum: &Pendulum) -> [f64; 6] {
     let from = |t, x, v| State { t, x, v };
     let seconds = (length / gravity).sqrt();
     let touch = Event::stop(|_, x, _| x - barrier);
-    let approach = integrate(acceleration, from(0.0, -1.5, 0.0), 10.0 * seconds, &[touch], &options).expect("a touch");
+    let approach = integrate(
+        acceleration,
+        from(0.0, -1.5, 0.0),
+        10.0 * seconds,
+        &[touch],
+        &options,
+    )
+    .expect("a touch");
     let touch = approach.end();
-    let events = [Event::record(|_, _, v| v), Event::stop(|_, x, _| x - barrier).falling()];
-    let pressed = integrate(acceleration, from(0.0, barrier, touch.v), seconds, &events, &options).expect("a release");
+    let events = [
+        Event::record(|_, _, v| v),
+        Event::stop(|_, x, _| x - barrier).falling(),
+    ];
+    let pressed = integrate(
+        acceleration,
+        from(0.0, barrier, touch.v),
+        seconds,
+        &events,
+        &options,
+    )
+    .expect("a release");
     let deepest = pressed.occurrences()[0].state.x;
     let duration = pressed.end().t;
     [
@@ -93,7 +112,11 @@ fn every_number_is_that_of_a_motion_followed_in_si_units() {
         ];
         for (quantity, expected) in quantities.into_iter().zip(followed(pendulum)) {
             let error = quantity.runge_kutta / expected - 1.0;
-            assert!(error.abs() < 1e-7, "{text}: {} is off by {error}", quantity.name);
+            assert!(
+                error.abs() < 1e-7,
+                "{text}: {} is off by {error}",
+                quantity.name
+            );
         }
         let kinetic = pendulum.mass * found.speed.runge_kutta.powi(2) / 2.0;
         assert!((found.energy.runge_kutta / kinetic - 1.0).abs() < 1e-13);
@@ -125,7 +148,8 @@ fn units_are_those_of_the_pendulum_with_the_contact_of_hertz() {
     let given = "[contact]\ngamma = 1e6\n[design]\nmass = 0.5\nlength = 2\ngravity = 1.62\n";
     assert_eq!(si(given).expect("units").peak_pressure, None);
     let found = si(&format!("{given}radius = 0.03")).expect("units");
-    let [force, depth] = [&found.peak_force, &found.penetration].map(|quantity| quantity.runge_kutta);
+    let [force, depth] =
+        [&found.peak_force, &found.penetration].map(|quantity| quantity.runge_kutta);
     let pressure = found.peak_pressure.expect("a pressure").runge_kutta;
     assert!((pressure * std::f64::consts::PI * 0.03 * depth / force / 1.5 - 1.0).abs() < 1e-14);
     // Numbers beyond floating point are not handed on.
@@ -137,11 +161,16 @@ fn units_are_those_of_the_pendulum_with_the_contact_of_hertz() {
 
 #[test]
 fn a_stated_yield_limit_is_held_against_the_peak_pressure() {
-    let pressure = si("").and_then(|si| si.peak_pressure).expect("a pressure").runge_kutta;
+    let pressure = si("")
+        .and_then(|si| si.peak_pressure)
+        .expect("a pressure")
+        .runge_kutta;
     for (part, exceeded) in [(0.99, true), (1.01, false)] {
         let text = format!("[barrier]\nyield = {}", part * pressure / 1.6);
         let checks = si(&text).expect("units").yield_checks();
-        let [check] = &checks[..] else { panic!("{checks:?}") };
+        let [check] = &checks[..] else {
+            panic!("{checks:?}")
+        };
         assert_eq!((check.body, check.is_exceeded()), ("barrier", exceeded));
     }
     assert!(si("").expect("units").yield_checks().is_empty());
@@ -149,7 +178,9 @@ fn a_stated_yield_limit_is_held_against_the_peak_pressure() {
         .expect("units")
         .yield_checks();
     assert_eq!(
-        both.iter().map(|check| check.is_exceeded()).collect::<Vec<_>>(),
+        both.iter()
+            .map(|check| check.is_exceeded())
+            .collect::<Vec<_>>(),
         [false, true]
     );
 }
@@ -163,9 +194,10 @@ fn the_printed_contact_time_is_not_that_of_any_reading() {
         assert!((2700.0..2900.0).contains(ratio) && !paper::is_reproduced(*ratio, 0.1));
     }
     // Read as seconds with the lengths of Table 5 the printed time needs this gamma.
-    let file: Problem = "[contact]\ngamma = 1.24e16\n[design]\nmass = 0.0112\nlength = 0.0681\ngravity = 9.81"
-        .parse()
-        .expect("a file");
+    let file: Problem =
+        "[contact]\ngamma = 1.24e16\n[design]\nmass = 0.0112\nlength = 0.0681\ngravity = 9.81"
+            .parse()
+            .expect("a file");
     let stiff = solve(Setup::try_from(&file).expect("an impact")).expect("a motion");
     let index = stiff
         .columns
@@ -200,7 +232,8 @@ fn text_and_documents_say_so() {
         text.contains("warning: the barrier yields") && text.contains("outside its range"),
         "{text}"
     );
-    let document: Value = serde_json::from_str(&program(&["impact", example, "--format", "json"])).expect("JSON");
+    let document: Value =
+        serde_json::from_str(&program(&["impact", example, "--format", "json"])).expect("JSON");
     let limits = document["si"]["yield_limits"].as_array().expect("a list");
     let exceeded = |body: &str| {
         limits
@@ -227,8 +260,9 @@ fn text_and_documents_say_so() {
     assert!(document["si"].is_null());
 }
 
-/// The peak force of a contact that loses energy is the greatest over time, the damping in it, as in a study of materials: against samples
-/// of the other integrator, and near the law without the force of the swing.
+/// The peak force of a contact that loses energy is the greatest over time, the damping in it, as
+/// in a study of materials: against samples of the other integrator, and near the law without the
+/// force of the swing.
 #[test]
 fn the_peak_force_of_a_damped_contact_is_the_greatest_one() {
     use lindstedt::impact::contact::HuntCrossley;
@@ -250,7 +284,8 @@ fn the_peak_force_of_a_damped_contact_is_the_greatest_one() {
         duration: 4.0,
         ..Settings::default()
     };
-    let motion = simulate(&model, Start::default(), Integrator::Taylor, &settings).expect("a motion");
+    let motion =
+        simulate(&model, Start::default(), Integrator::Taylor, &settings).expect("a motion");
     let first = motion.impacts[0];
     let (from, to) = (first.entry_time, first.exit_time.expect("it leaves"));
     let force = |k: u32| {
@@ -263,14 +298,15 @@ fn the_peak_force_of_a_damped_contact_is_the_greatest_one() {
     let greatest = si.units.force() * (0..=10_000).map(force).fold(0.0, f64::max);
     let found = si.peak_force.runge_kutta;
     assert!((found / greatest - 1.0).abs() < 1e-5, "{found} {greatest}");
-    let law = HuntCrossley::new(1.5, gamma, impact.damping, impact.energy_speed).expect("a contact");
+    let law =
+        HuntCrossley::new(1.5, gamma, impact.damping, impact.energy_speed).expect("a contact");
     assert!((found / (si.units.force() * law.peak_force) - 1.0).abs() < 0.01);
     let told = si.peak_force.closed_forms.last().expect("a closed form");
     assert!((told / found - 1.0).abs() < 0.01, "{told} {found}");
 }
 
-/// The speed of a restitution is in m/s beside numbers in SI units, and otherwise in units of L omega: that of the bob of a longer
-/// pendulum is the same, its angular velocity is not.
+/// The speed of a restitution is in m/s beside numbers in SI units, and otherwise in units of L
+/// omega: that of the bob of a longer pendulum is the same, its angular velocity is not.
 #[test]
 fn a_stated_speed_has_the_unit_of_the_numbers_beside_it() {
     let mu_of = |text: &str| {
@@ -281,7 +317,11 @@ fn a_stated_speed_has_the_unit_of_the_numbers_beside_it() {
         let (model, _) = asked.case.motion().expect("an equation");
         (
             model.mu,
-            asked.case.dissipation(None).expect("forms").at_speed_in_words(),
+            asked
+                .case
+                .dissipation(None)
+                .expect("forms")
+                .at_speed_in_words(),
         )
     };
     let unit = |length: f64, gravity: f64| (length * gravity).sqrt();
@@ -296,7 +336,10 @@ fn a_stated_speed_has_the_unit_of_the_numbers_beside_it() {
     ] {
         let (mu, words) = mu_of(&format!("at_speed = 0.7\n{sections}"));
         let expected = bare(0.7 / unit(length, gravity)).0;
-        assert!((mu / expected - 1.0).abs() < 1e-12, "{sections}: {mu} and {expected}");
+        assert!(
+            (mu / expected - 1.0).abs() < 1e-12,
+            "{sections}: {mu} and {expected}"
+        );
         let words = words.expect("a speed");
         assert!(
             words.starts_with("0.7 m/s, ") && words.ends_with(" rad*omega"),
@@ -306,7 +349,8 @@ fn a_stated_speed_has_the_unit_of_the_numbers_beside_it() {
     // The phases of one impact and the study of materials read it alike.
     let text = "[contact]\ngamma = 1e6\nrestitution = 0.8\nat_speed = 0.7\n[design]\nmass = 0.02\nlength = 0.25\ngravity = 9.81";
     let impact =
-        solve(Setup::try_from(&text.parse::<Problem>().expect("a file")).expect("an impact")).expect("a motion");
+        solve(Setup::try_from(&text.parse::<Problem>().expect("a file")).expect("an impact"))
+            .expect("a motion");
     let (mu, _) = mu_of("at_speed = 0.7\n[design]\nlength = 0.25");
     assert!((impact.damping / (mu / 1e6) - 1.0).abs() < 1e-12);
     let text = "[contact]\nrestitution = 0.8\nat_speed = 0.7\n[design]\nlength = 0.25";
@@ -318,7 +362,9 @@ fn a_stated_speed_has_the_unit_of_the_numbers_beside_it() {
     let forms = study.case.dissipation(None).expect("forms");
     assert!((forms.mu_over_gamma / (mu / 1e6) - 1.0).abs() < 1e-12);
     // Where the length is swept the speed of the bob stays what it is.
-    let file: Problem = "[contact]\nrestitution = 0.8\nat_speed = 0.7".parse().expect("a file");
+    let file: Problem = "[contact]\nrestitution = 0.8\nat_speed = 0.7"
+        .parse()
+        .expect("a file");
     let mut case = file.simulate(&[Parameter::Length]).expect("a motion").case;
     let mut ratio = |length: f64| {
         case.set(Parameter::Length, length);

@@ -1,11 +1,13 @@
-//! Claims of publications: a verdict turns when a claim is tampered with, an assumption is found and needed, numbers that share an
-//! unknown must agree on it, and what the paper's audit finds is held against formulas written out here.
+//! Claims of publications: a verdict turns when a claim is tampered with, an assumption is found
+//! and needed, numbers that share an unknown must agree on it, and what the paper's audit finds is
+//! held against formulas written out here.
 
 use std::f64::consts::PI;
 use std::process::{Command, Output};
 
 use lindstedt::audit::{
-    Audit, Claims, Computed, Finding, NAMES, Printed, Quantity, Relation, Rounding, Stated, Trend, Verdict, audit,
+    Audit, Claims, Computed, Finding, NAMES, Printed, Quantity, Relation, Rounding, Stated, Trend,
+    Verdict, audit,
 };
 
 const PAPER: &str = include_str!("../../examples/audit/paper.toml");
@@ -29,7 +31,10 @@ fn run(arguments: &[&str]) -> Output {
 
 /// The program on a file of its own.
 fn of_file(name: &str, text: &str, options: &[&str]) -> Output {
-    let path = std::env::temp_dir().join(format!("lindstedt-audit-{name}-{}.toml", std::process::id()));
+    let path = std::env::temp_dir().join(format!(
+        "lindstedt-audit-{name}-{}.toml",
+        std::process::id()
+    ));
     std::fs::write(&path, text).expect("a file");
     let output = run(&[&["audit", path.to_str().expect("a path in text")], options].concat());
     std::fs::remove_file(path).expect("the file goes");
@@ -70,13 +75,20 @@ fn every_equation_table_and_figure_has_its_claim() {
 
 /// The printed text with its last digit changed.
 fn tampered(printed: &str) -> String {
-    let place = printed.rfind(|letter: char| letter.is_ascii_digit()).expect("a digit");
+    let place = printed
+        .rfind(|letter: char| letter.is_ascii_digit())
+        .expect("a digit");
     let digit = printed[place..]
         .chars()
         .next()
         .and_then(|digit| digit.to_digit(10))
         .expect("a digit");
-    format!("{}{}{}", &printed[..place], (digit + 5) % 10, &printed[place + 1..])
+    format!(
+        "{}{}{}",
+        &printed[..place],
+        (digit + 5) % 10,
+        &printed[place + 1..]
+    )
 }
 
 #[test]
@@ -85,15 +97,23 @@ fn a_changed_digit_turns_the_verdict() {
     for text in [PAPER, FREQUENCIES] {
         let honest = audit(claims(text));
         for (index, finding) in honest.findings.iter().enumerate() {
-            let Some(Stated::Number(printed)) = finding.claim.entries.first().map(|entry| &entry.stated) else {
+            let Some(Stated::Number(printed)) =
+                finding.claim.entries.first().map(|entry| &entry.stated)
+            else {
                 continue;
             };
-            let is_bare = finding.claim.question.tolerance.is_none() && printed.relation == Relation::Equal;
+            let is_bare =
+                finding.claim.question.tolerance.is_none() && printed.relation == Relation::Equal;
             if !finding.verdict.is_reproduced() || !is_bare {
                 continue;
             }
             let mut claim = claims(text).claims.swap_remove(index);
-            let text = tampered(claim.entries[0].read_as.as_ref().unwrap_or(&claim.entries[0].printed));
+            let text = tampered(
+                claim.entries[0]
+                    .read_as
+                    .as_ref()
+                    .unwrap_or(&claim.entries[0].printed),
+            );
             claim.entries[0].stated = Stated::Number(Printed::read(&text).expect("a number"));
             // An unknown takes up what is left of two digits.
             claim.unknown = claim.unknown.filter(|_| false);
@@ -142,10 +162,16 @@ fn every_assumption_is_needed() {
                 });
                 found.findings[0].verdict
             };
-            let all = (0..supposed.len()).map(Some).chain(finding.demand.map(|_| None));
+            let all = (0..supposed.len())
+                .map(Some)
+                .chain(finding.demand.map(|_| None));
             for one in all {
                 let verdict = without(one);
-                assert!(!verdict.is_reproduced(), "{}: {one:?} is not needed", finding.claim.id);
+                assert!(
+                    !verdict.is_reproduced(),
+                    "{}: {one:?} is not needed",
+                    finding.claim.id
+                );
                 needed += 1;
             }
         }
@@ -164,7 +190,10 @@ fn what_is_found_of_the_paper_follows_from_its_numbers() {
         "pi = 3.14 and digits rounded or cut off"
     );
     assert_eq!(finding(&paper, "table-1-errors").assumption(), "pi = 3.14");
-    assert_eq!(finding(&paper, "equation-16-phase").assumption(), "digits cut off");
+    assert_eq!(
+        finding(&paper, "equation-16-phase").assumption(),
+        "digits cut off"
+    );
     // Equation (15): slope 36/35 sqrt(d), d = (5 v^2/(4 gamma))^(2/5).
     let speed = (1.0 - 1.5_f64.powi(2) / 8.0).sqrt() * (1.5_f64.powi(2) - 0.323_f64.powi(2)).sqrt();
     let gamma_of = |slope: f64| 1.25 * speed * speed / (35.0 / 36.0 * slope).powi(5);
@@ -185,7 +214,10 @@ fn what_is_found_of_the_paper_follows_from_its_numbers() {
             .any(|words| words.contains("`equation-15-constant`"))
     );
     // The range of Table 4.
-    let box_of_table_4 = [stiffness(0.1e9, 0.001, 0.03, 0.1), stiffness(200e9, 0.02, 0.3, 0.01)];
+    let box_of_table_4 = [
+        stiffness(0.1e9, 0.001, 0.03, 0.1),
+        stiffness(200e9, 0.02, 0.3, 0.01),
+    ];
     for (end, expected) in slope.unknown.within.into_iter().zip(box_of_table_4) {
         assert!((end / expected - 1.0).abs() < 1e-12);
     }
@@ -201,7 +233,10 @@ fn what_is_found_of_the_paper_follows_from_its_numbers() {
         by_line(9.258e-8 / time_unit),
     ] {
         assert!(wanted > 1e3 * box_of_table_4[1]);
-        let text = format!("would need gamma = {},", lindstedt::export::significant(wanted, 3));
+        let text = format!(
+            "would need gamma = {},",
+            lindstedt::export::significant(wanted, 3)
+        );
         assert!(
             evidence.iter().any(|words| words.contains(&text)),
             "{text}: {evidence:?}"
@@ -241,9 +276,15 @@ fn claims_that_share_an_unknown_must_agree_on_it() {
     for finding in &agree.findings {
         assert_eq!(finding.verdict, Verdict::UnderAssumption, "{finding:?}");
         let [low, high] = finding.demand.expect("a demand").range;
-        assert!(low <= 2.0 && 2.0 <= high && high - low < 0.1, "{low} {high}");
         assert!(
-            finding.evidence.iter().any(|words| words.contains("serves")),
+            low <= 2.0 && 2.0 <= high && high - low < 0.1,
+            "{low} {high}"
+        );
+        assert!(
+            finding
+                .evidence
+                .iter()
+                .any(|words| words.contains("serves")),
             "{:?}",
             finding.evidence
         );
@@ -253,16 +294,27 @@ fn claims_that_share_an_unknown_must_agree_on_it() {
         assert_eq!(finding.verdict, Verdict::Inconsistent);
         assert!(finding.demand.is_some_and(|demand| demand.is_within));
         let last = finding.evidence.last().expect("evidence");
-        assert!(last.contains(other) && last.contains("there is one k"), "{last}");
+        assert!(
+            last.contains(other) && last.contains("there is one k"),
+            "{last}"
+        );
     }
     // Beyond its range one does not speak for the other.
     let beyond = audit(claims(&file("0.02")));
-    let verdicts: Vec<Verdict> = beyond.findings.iter().map(|finding| finding.verdict).collect();
+    let verdicts: Vec<Verdict> = beyond
+        .findings
+        .iter()
+        .map(|finding| finding.verdict)
+        .collect();
     assert_eq!(verdicts, [Verdict::UnderAssumption, Verdict::Inconsistent]);
-    assert!(beyond.findings[1].evidence[0].contains("it would need k = 50, but that lies between 1 and 10"));
+    assert!(
+        beyond.findings[1].evidence[0]
+            .contains("it would need k = 50, but that lies between 1 and 10")
+    );
 }
 
-const ONE: &str = "[[claim]]\nid = \"one\"\nquantity = \"value\"\nformula = \"sqrt(2)\"\nprinted = ";
+const ONE: &str =
+    "[[claim]]\nid = \"one\"\nquantity = \"value\"\nformula = \"sqrt(2)\"\nprinted = ";
 
 #[test]
 fn the_exit_code_says_whether_every_verdict_is_the_expected_one() {
@@ -274,7 +326,11 @@ fn the_exit_code_says_whether_every_verdict_is_the_expected_one() {
         ("\"1.4143\"\nexpect = \"inconsistent\"", &["--strict"], 3),
         ("\"1.4142\"\nexpect = \"inconsistent\"", &[], 3),
         ("\"1.4142\"\nexpect = \"inconsistent\"", &["--strict"], 0),
-        ("\"1.4142\"\nexpect = \"reproduced-under-assumption\"", &[], 3),
+        (
+            "\"1.4142\"\nexpect = \"reproduced-under-assumption\"",
+            &[],
+            3,
+        ),
         ("\"1.41\"\nrounding = \"cut\"", &[], 0),
         ("\"about\"", &[], 1),
         ("\"1.4142\"", &["--tolerance", "0.1"], 2),
@@ -282,7 +338,11 @@ fn the_exit_code_says_whether_every_verdict_is_the_expected_one() {
     ] {
         let output = of_file("codes", &format!("{ONE}{printed}\n"), options);
         assert_eq!(output.status.code(), Some(code), "{printed} {options:?}");
-        assert_eq!(output.stdout.is_empty(), matches!(code, 1 | 2), "{printed} {options:?}");
+        assert_eq!(
+            output.stdout.is_empty(),
+            matches!(code, 1 | 2),
+            "{printed} {options:?}"
+        );
     }
     assert_eq!(run(&["paper", "--strict"]).status.code(), Some(3));
 }
@@ -290,20 +350,35 @@ fn the_exit_code_says_whether_every_verdict_is_the_expected_one() {
 #[test]
 fn what_is_missing_is_named_and_what_is_refused_has_its_reason() {
     let of = |text: &str| {
-        audit(claims(&format!("[[claim]]\nid = \"one\"\nprinted = \"1\"\n{text}")))
-            .findings
-            .swap_remove(0)
+        audit(claims(&format!(
+            "[[claim]]\nid = \"one\"\nprinted = \"1\"\n{text}"
+        )))
+        .findings
+        .swap_remove(0)
     };
     let found = of("quantity = \"rest_time\"\nvalues = { A = 1.5, xc = 0.323, gamma = 1e6 }");
     assert_eq!(
         (found.verdict, found.missing.join(" ")),
         (Verdict::NotReproducible, "alpha mu zeta".to_owned())
     );
-    let found = of("quantity = \"frequency\"\nequation = \"cubic-pendulum\"\norder = 2\nvalues = { A = 3 }");
-    assert_eq!((found.verdict, found.missing.len()), (Verdict::NotReproducible, 0));
-    assert!(found.evidence[0].contains("omega^2 = -0.125"), "{:?}", found.evidence);
+    let found = of(
+        "quantity = \"frequency\"\nequation = \"cubic-pendulum\"\norder = 2\nvalues = { A = 3 }",
+    );
+    assert_eq!(
+        (found.verdict, found.missing.len()),
+        (Verdict::NotReproducible, 0)
+    );
+    assert!(
+        found.evidence[0].contains("omega^2 = -0.125"),
+        "{:?}",
+        found.evidence
+    );
     let found = of("quantity = \"value\"\nformula = \"a1\"\nvalues = { a1 = \"b1\", b1 = \"a1\" }");
-    assert!(found.evidence[0].contains("defined by itself"), "{:?}", found.evidence);
+    assert!(
+        found.evidence[0].contains("defined by itself"),
+        "{:?}",
+        found.evidence
+    );
     let found = of("quantity = \"value\"\nformula = \"1/(k - 1)\"\nvalues = { k = 1 }");
     assert_eq!(found.verdict, Verdict::NotReproducible);
     // A number far from what is meant is never reproduced.
@@ -318,11 +393,17 @@ fn the_fewest_suppositions_are_found() {
     let found = audit(claims(text)).findings.swap_remove(0);
     assert_eq!(found.assumption(), "k = 3");
     let text = text.replace("9.42\"", "6.28\"");
-    assert_eq!(audit(claims(&text)).findings[0].verdict, Verdict::Reproduced);
+    assert_eq!(
+        audit(claims(&text)).findings[0].verdict,
+        Verdict::Reproduced
+    );
     let text = text.replace("6.28\"", "9\"").replace("k = 4", "k = 5");
     assert_eq!(audit(claims(&text)).findings[0].assumption(), "k = 3");
     let text = text.replace("printed = \"9\"", "printed = \"9.00\"");
-    assert_eq!(audit(claims(&text)).findings[0].assumption(), "k = 3 and pi = 3");
+    assert_eq!(
+        audit(claims(&text)).findings[0].assumption(),
+        "k = 3 and pi = 3"
+    );
 }
 
 #[test]
@@ -391,7 +472,10 @@ fn a_formula_is_compared_for_every_value_of_its_symbols() {
             "[[claim]]\nid = \"one\"\nquantity = \"identity\"\nformula = \"m*X'^2/2\"\nvalues = {{ X = \"L*sin(x)\" }}\nprinted = \"{printed}\""
         );
         let found = audit(claims(&text)).findings.swap_remove(0);
-        assert!(matches!(found.claim.question.quantity, Quantity::Identity(_)));
+        assert!(matches!(
+            found.claim.question.quantity,
+            Quantity::Identity(_)
+        ));
         (found.verdict, found.evidence.join("; "))
     };
     assert_eq!(of("m*L^2*x'^2*cos(x)^2/2").0, Verdict::Reproduced);
@@ -408,7 +492,8 @@ fn a_formula_is_compared_for_every_value_of_its_symbols() {
     );
 }
 
-/// A term that the law does not have is marked as absent, and one that it cannot have, or does not reach, is no zero.
+/// A term that the law does not have is marked as absent, and one that it cannot have, or does not
+/// reach, is no zero.
 #[test]
 fn the_coefficient_of_a_term_that_does_not_occur_is_no_number_among_others() {
     let of = |term: &str, printed: &str| {
@@ -421,7 +506,10 @@ fn the_coefficient_of_a_term_that_does_not_occur_is_no_number_among_others() {
     assert_eq!(of("A^2", "-1/8").verdict, Verdict::Reproduced);
     let absent = of("A^3", "1/8");
     assert_eq!(absent.verdict, Verdict::Inconsistent);
-    assert_eq!(absent.evidence, ["printed 1/8, but the derived law has no such term"]);
+    assert_eq!(
+        absent.evidence,
+        ["printed 1/8, but the derived law has no such term"]
+    );
     assert!(matches!(absent.tried[0].computed[0], Ok(Computed::Absent)));
     assert_eq!(of("A^3", "0").verdict, Verdict::Reproduced);
     for (term, words) in [
@@ -433,7 +521,10 @@ fn the_coefficient_of_a_term_that_does_not_occur_is_no_number_among_others() {
             let found = of(term, printed);
             assert_eq!(found.verdict, Verdict::NotReproducible, "{term}");
             assert!(
-                found.evidence.iter().any(|evidence| evidence.contains(words)),
+                found
+                    .evidence
+                    .iter()
+                    .any(|evidence| evidence.contains(words)),
                 "{:?}",
                 found.evidence
             );
@@ -483,7 +574,10 @@ fn no_file_of_claims_breaks_the_program() {
             match next(4) {
                 0 => drop(lines.remove(number)),
                 1 => {
-                    let other = sections[next(sections.len())].lines().nth(next(6)).unwrap_or_default();
+                    let other = sections[next(sections.len())]
+                        .lines()
+                        .nth(next(6))
+                        .unwrap_or_default();
                     lines.insert(number, other.to_owned());
                 }
                 2 => {
@@ -513,18 +607,28 @@ fn no_file_of_claims_breaks_the_program() {
             Ok(claims) if claims.claims.iter().any(|claim| claim.unknown.is_some()) => {}
             Ok(claims) => {
                 let found = audit(claims);
-                assert!(found.findings.iter().all(|finding| !finding.claim.entries.is_empty()));
+                assert!(
+                    found
+                        .findings
+                        .iter()
+                        .all(|finding| !finding.claim.entries.is_empty())
+                );
                 read += 1;
             }
         }
     }
-    assert!(read > 100 && refused > 300, "{read} read, {refused} refused");
+    assert!(
+        read > 100 && refused > 300,
+        "{read} read, {refused} refused"
+    );
 }
 
 #[test]
 fn an_equation_of_motion_follows_from_its_energies() {
     let of = |parts: &str, printed: &str| {
-        let text = format!("[[claim]]\nid = \"one\"\nquantity = \"motion\"\n{parts}\nprinted = \"{printed}\"");
+        let text = format!(
+            "[[claim]]\nid = \"one\"\nquantity = \"motion\"\n{parts}\nprinted = \"{printed}\""
+        );
         audit(claims(&text)).findings.swap_remove(0)
     };
     for (parts, printed) in [
@@ -563,5 +667,9 @@ fn an_equation_of_motion_follows_from_its_energies() {
     );
     let none = of("kinetic = \"m*L^2/2\"", "x'' = 0");
     assert_eq!(none.verdict, Verdict::NotReproducible);
-    assert!(none.evidence[0].contains("without inertia"), "{:?}", none.evidence);
+    assert!(
+        none.evidence[0].contains("without inertia"),
+        "{:?}",
+        none.evidence
+    );
 }

@@ -29,14 +29,20 @@ fn every_method_answers_or_says_why_not() {
         for (method, result) in methods(entry) {
             match result {
                 Ok(()) => answers += 1,
-                Err(refusal) => assert!(refusal.to_string().len() > 20, "{} {}", entry.name, method.name()),
+                Err(refusal) => assert!(
+                    refusal.to_string().len() > 20,
+                    "{} {}",
+                    entry.name,
+                    method.name()
+                ),
             }
         }
     }
     assert!(answers >= 24, "{answers} answers");
 }
 
-/// The names of methods fill their lines: none is longer than a hundred characters and a comma, and none is broken too early.
+/// The names of methods fill their lines: none is longer than a hundred characters and a comma, and
+/// none is broken too early.
 #[test]
 fn the_listing_fills_its_lines() {
     let output = std::process::Command::new(env!("CARGO_BIN_EXE_lindstedt"))
@@ -47,8 +53,15 @@ fn the_listing_fills_its_lines() {
     let lines: Vec<&str> = text.lines().collect();
     let mut broken = 0;
     for pair in lines.windows(2).filter(|pair| pair[0].ends_with(',')) {
-        let next = pair[1].trim_start().split([',', ':']).next().expect("a name");
-        assert!(pair[0].len() <= 101 && pair[1].starts_with("    "), "{pair:?}");
+        let next = pair[1]
+            .trim_start()
+            .split([',', ':'])
+            .next()
+            .expect("a name");
+        assert!(
+            pair[0].len() <= 101 && pair[1].starts_with("    "),
+            "{pair:?}"
+        );
         assert!(pair[0].len() + " ".len() + next.len() > 100, "{pair:?}");
         broken += 1;
     }
@@ -62,7 +75,9 @@ fn the_listing_fills_its_lines() {
 fn derived_laws_are_the_published_ones() {
     let mut compared = 0;
     for entry in CATALOG {
-        let Some(published) = entry.published else { continue };
+        let Some(published) = entry.published else {
+            continue;
+        };
         let oscillator = Oscillator::parse(entry.equation).expect(entry.name);
         let amplitude = Some(AmplitudeConvention::Initial);
         let options = Options {
@@ -86,7 +101,8 @@ fn derived_laws_are_the_published_ones() {
     assert!(compared >= 12, "{compared} published laws");
 }
 
-/// The methods that expand in a small parameter; the others are held to their own claims in `tests/conformance/`.
+/// The methods that expand in a small parameter; the others are held to their own claims in
+/// `tests/conformance/`.
 const EXPANSIONS: [Method; 2] = [Method::LindstedtPoincare, Method::HomotopyPerturbation];
 
 #[test]
@@ -110,10 +126,11 @@ fn derived_motions_are_the_true_ones_at_small_amplitudes() {
                     "eps" | "mu" | "lambda" => "1/10",
                     _ => "1/2",
                 };
-                at.insert(name, value.parse().expect("a number")).expect("a value");
+                at.insert(name, value.parse().expect("a number"))
+                    .expect("a value");
             }
-            let verdict =
-                judge(&oscillator, &solution, &at, 1e-3).unwrap_or_else(|error| panic!("{}: {error}", entry.name));
+            let verdict = judge(&oscillator, &solution, &at, 1e-3)
+                .unwrap_or_else(|error| panic!("{}: {error}", entry.name));
             assert_eq!(
                 verdict.verdict,
                 Verdict::Pass,
@@ -122,7 +139,9 @@ fn derived_motions_are_the_true_ones_at_small_amplitudes() {
                 method.name()
             );
             assert!(
-                verdict.max_deviation.is_some_and(|deviation| deviation < 5e-3),
+                verdict
+                    .max_deviation
+                    .is_some_and(|deviation| deviation < 5e-3),
                 "{} {verdict:?}",
                 entry.name
             );
@@ -130,7 +149,8 @@ fn derived_motions_are_the_true_ones_at_small_amplitudes() {
     }
 }
 
-/// The values at which an entry is judged: `size` for what makes the motion nonlinear, one half for the rest.
+/// The values at which an entry is judged: `size` for what makes the motion nonlinear, one half for
+/// the rest.
 fn values(solution: &Solution, size: &str) -> Values {
     let mut at = Values::default();
     for name in needed_values(solution) {
@@ -139,14 +159,16 @@ fn values(solution: &Solution, size: &str) -> Values {
             "lambda" => "1/10",
             _ => "1/2",
         };
-        at.insert(name, value.parse().expect("a number")).expect("a value");
+        at.insert(name, value.parse().expect("a number"))
+            .expect("a value");
     }
     at
 }
 
-/// A tolerance alone cannot tell a law from the linear frequency where the two are close: what counts is how much of
-/// the true shift of the frequency, from almost linear to the amplitude in question, the law misses.
-/// A coefficient of the leading correction that is twice too large misses all of it.
+/// A tolerance alone cannot tell a law from the linear frequency where the two are close: what
+/// counts is how much of the true shift of the frequency, from almost linear to the amplitude in
+/// question, the law misses. A coefficient of the leading correction that is twice too large misses
+/// all of it.
 #[test]
 fn derived_laws_follow_the_shift_of_the_frequency() {
     let mut shifts = 0;
@@ -160,13 +182,18 @@ fn derived_laws_follow_the_shift_of_the_frequency() {
             let Ok(solution) = solve(&oscillator, &options) else {
                 continue;
             };
-            let judged = |size| judge(&oscillator, &solution, &values(&solution, size), 1e-3).expect(entry.name);
+            let judged = |size| {
+                judge(&oscillator, &solution, &values(&solution, size), 1e-3).expect(entry.name)
+            };
             let (linear, nonlinear) = (judged("1/1000"), judged("1/20"));
             let shift = (nonlinear.true_frequency / linear.true_frequency - 1.0).abs();
             let missed = nonlinear.relative_error.expect("a real frequency").abs();
             assert!(shift > 1e-7, "{} does not shift: {shift:e}", entry.name);
             let context = format!("{} by {}", entry.name, method.name());
-            assert!(missed < shift / 8.0, "{context} misses {missed:e} of {shift:e}");
+            assert!(
+                missed < shift / 8.0,
+                "{context} misses {missed:e} of {shift:e}"
+            );
             shifts += 1;
         }
     }

@@ -1,5 +1,5 @@
-//! Certificates as files: what `certify` writes `check` proves, a second program in another language proves, and what has been tampered
-//! with neither.
+//! Certificates as files: what `certify` writes `check` proves, a second program in another
+//! language proves, and what has been tampered with neither.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -21,7 +21,10 @@ fn run(arguments: &[&str]) -> Output {
 }
 
 fn folder(name: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("lindstedt-certificates-{name}-{}", std::process::id()));
+    let folder = std::env::temp_dir().join(format!(
+        "lindstedt-certificates-{name}-{}",
+        std::process::id()
+    ));
     std::fs::create_dir_all(&folder).expect("a folder");
     folder
 }
@@ -104,7 +107,10 @@ fn driven_motions_are_proved_and_proved_again() {
 fn what_certify_writes_check_proves() {
     let folder = folder("check");
     for example in ["pendulum", "cubic-pendulum", "quadratic", "spring"] {
-        let problem = format!("{}/examples/certify/{example}.toml", env!("CARGO_MANIFEST_DIR"));
+        let problem = format!(
+            "{}/examples/certify/{example}.toml",
+            env!("CARGO_MANIFEST_DIR")
+        );
         let (file, document) = certified(&folder, &[&problem]);
         let checked = run(&["check", file.to_str().expect("a path in text")]);
         assert!(
@@ -115,15 +121,19 @@ fn what_certify_writes_check_proves() {
         // The same facts, without the derivation.
         let facts = |output: &[u8]| {
             let text = String::from_utf8_lossy(output).into_owned();
-            let lines = text
-                .lines()
-                .filter(|line| line.starts_with("  ") && !line.contains("x") && !line.contains("u"));
+            let lines = text.lines().filter(|line| {
+                line.starts_with("  ") && !line.contains("x") && !line.contains("u")
+            });
             lines.map(str::to_owned).collect::<Vec<_>>()
         };
         let proved = run(&["certify", &problem]);
         let same = facts(&proved.stdout);
         assert!(
-            facts(&checked.stdout).iter().filter(|line| same.contains(line)).count() >= 7,
+            facts(&checked.stdout)
+                .iter()
+                .filter(|line| same.contains(line))
+                .count()
+                >= 7,
             "{example}"
         );
         // Once more through the types.
@@ -131,13 +141,18 @@ fn what_certify_writes_check_proves() {
         let certificate = document.read().expect("a certificate");
         assert_eq!(lindstedt::export::json::certificate(&certificate), document);
         // A tolerance that is missed is exit code 3.
-        let strict = run(&["check", file.to_str().expect("a path in text"), "--tolerance", "1e-12"]);
+        let strict = run(&[
+            "check",
+            file.to_str().expect("a path in text"),
+            "--tolerance",
+            "1e-12",
+        ]);
         assert_eq!(strict.status.code(), Some(3), "{example}");
     }
 }
 
-/// omega, of a driven motion the amplitude, from below and from above, by the second program; `None` where it does not prove the
-/// certificate with all its claims.
+/// omega, of a driven motion the amplitude, from below and from above, by the second program;
+/// `None` where it does not prove the certificate with all its claims.
 fn by_python(python: &Path, file: &Path) -> Option<[Rational; 2]> {
     let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/check_certificate.py");
     let output = Command::new(python)
@@ -152,7 +167,10 @@ fn by_python(python: &Path, file: &Path) -> Option<[Rational; 2]> {
         return None;
     }
     let proved: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    let ends = proved.get("omega").or(proved.get("amplitude")).expect("two ends");
+    let ends = proved
+        .get("omega")
+        .or(proved.get("amplitude"))
+        .expect("two ends");
     let fraction = |place: usize| {
         let text = ends[place].as_str().expect("text");
         let digits: Rational = text.replace('.', "").parse().expect("digits");
@@ -173,7 +191,8 @@ fn by_library(document: &Value) -> Result<Enclosure, String> {
             check(&certificate)
         }
         _ => {
-            let document: DampedCertificateDocument = serde_json::from_value(document.clone()).map_err(unread)?;
+            let document: DampedCertificateDocument =
+                serde_json::from_value(document.clone()).map_err(unread)?;
             check_damped(&document.read().map_err(|error| error.to_string())?)
         }
     };
@@ -201,7 +220,10 @@ fn a_second_program_in_python_proves_the_same() {
         |document| document["formula"]["frequency_error"][1] = json!("1e-12"),
         |document| document["formula"]["drift"][0] = json!("1"),
         |document| {
-            document["formula"]["omega"] = json!(format!("-{}", document["formula"]["omega"].as_str().unwrap_or("1")))
+            document["formula"]["omega"] = json!(format!(
+                "-{}",
+                document["formula"]["omega"].as_str().unwrap_or("1")
+            ))
         },
     ];
     let of_cycles: [Tamper; 6] = [
@@ -228,15 +250,20 @@ fn a_second_program_in_python_proves_the_same() {
         let folder = folder(name);
         for (index, arguments) in questions.iter().enumerate() {
             let (file, document) = certified(&folder, arguments);
-            let own = by_library(&document).unwrap_or_else(|error| panic!("{arguments:?}: {error}"));
-            let [lower, upper] = by_python(&python, &file).unwrap_or_else(|| panic!("{arguments:?}"));
+            let own =
+                by_library(&document).unwrap_or_else(|error| panic!("{arguments:?}: {error}"));
+            let [lower, upper] =
+                by_python(&python, &file).unwrap_or_else(|| panic!("{arguments:?}"));
             // Both are true, so that they overlap; and each is as narrow.
             let radius = lindstedt::exact::from_f64(own.radius.value()).expect("a finite radius");
             assert!(
                 lower <= &own.middle + &radius && &own.middle - &radius <= upper,
                 "{arguments:?}"
             );
-            assert!(&upper - &lower < ratio(1, 1_000_000_000).pow(3), "{arguments:?}");
+            assert!(
+                &upper - &lower < ratio(1, 1_000_000_000).pow(3),
+                "{arguments:?}"
+            );
             // Tampered with, it is no proof for either.
             let all = of_all.iter().chain(tampers).enumerate();
             for (which, tamper) in all.filter(|_| index == 0) {
@@ -280,7 +307,8 @@ fn a_second_program_in_python_proves_the_same() {
             );
         });
         scope.spawn(|| {
-            let files = ["forced-duffing", "parametric", "driven-well"].map(|name| format!("{examples}/{name}.toml"));
+            let files = ["forced-duffing", "parametric", "driven-well"]
+                .map(|name| format!("{examples}/{name}.toml"));
             let questions = files.each_ref().map(|file| vec![file.as_str()]);
             let questions = questions.each_ref().map(Vec::as_slice);
             proved("python-driven", &questions, &of_driven);
@@ -288,14 +316,23 @@ fn a_second_program_in_python_proves_the_same() {
     });
 }
 
-/// The cycle half a period later, with an inverse that belongs to it, and as far off the formula as that is.
+/// The cycle half a period later, with an inverse that belongs to it, and as far off the formula as
+/// that is.
 fn half_a_period_later(document: &mut Value) {
     let turned = |text: &Value| match text.as_str().unwrap_or("0") {
         "0" => json!("0"),
-        text => json!(text.strip_prefix('-').map_or_else(|| format!("-{text}"), str::to_owned)),
+        text => json!(
+            text.strip_prefix('-')
+                .map_or_else(|| format!("-{text}"), str::to_owned)
+        ),
     };
     for key in ["c", "s"] {
-        document[key] = document[key].as_array().expect("a list").iter().map(turned).collect();
+        document[key] = document[key]
+            .as_array()
+            .expect("a list")
+            .iter()
+            .map(turned)
+            .collect();
     }
     document["A_block"][0] = document["A_block"][0]
         .as_array()
@@ -306,7 +343,8 @@ fn half_a_period_later(document: &mut Value) {
     document["formula"]["phase_error"] = json!(["1", "10"]);
 }
 
-/// The text of a file never steers a terminal, and stands under "Proved" only where it is what was proved.
+/// The text of a file never steers a terminal, and stands under "Proved" only where it is what was
+/// proved.
 #[test]
 fn words_of_a_file_are_words() {
     let folder = folder("words");
@@ -338,7 +376,10 @@ fn words_of_a_file_are_words() {
         if !text.is_empty() {
             assert_eq!(text.matches("\nProved\n").count(), 1, "{text}");
             let (proved, words) = text.split_once("\n\nWords of the file").expect("words");
-            assert!(!proved.contains("by all") && words.contains("\\u{"), "{text}");
+            assert!(
+                !proved.contains("by all") && words.contains("\\u{"),
+                "{text}"
+            );
         }
     }
     // Keys and texts that are quoted in a refusal.
@@ -346,7 +387,11 @@ fn words_of_a_file_are_words() {
     keyed["\u{1b}[31m\nerror: none"] = json!(1);
     let mut kind = document.clone();
     kind["ode"] = json!("\u{1b}]0;title\u{7}");
-    for other in [keyed, kind, json!({"ode": "\u{1b}[2J", "schema": "\u{1b}[2J"})] {
+    for other in [
+        keyed,
+        kind,
+        json!({"ode": "\u{1b}[2J", "schema": "\u{1b}[2J"}),
+    ] {
         let (text, errors) = checked(&other.to_string());
         assert!(
             text.is_empty() && errors.starts_with("error: ") && !steers(&errors),
@@ -364,7 +409,8 @@ fn words_of_a_file_are_words() {
     );
 }
 
-/// If the formula has no real value, the motion is proved, and it is said that no formula is judged.
+/// If the formula has no real value, the motion is proved, and it is said that no formula is
+/// judged.
 #[test]
 fn a_motion_is_proved_without_its_formula() {
     let folder = folder("alone");
@@ -381,7 +427,12 @@ fn a_motion_is_proved_without_its_formula() {
     let said = String::from_utf8_lossy(&said.stdout);
     let (file, document) = certified(&folder, &question);
     assert_eq!(document["formula"], Value::Null);
-    let checked = run(&["check", file.to_str().expect("a path in text"), "--tolerance", "1e-9"]);
+    let checked = run(&[
+        "check",
+        file.to_str().expect("a path in text"),
+        "--tolerance",
+        "1e-9",
+    ]);
     assert_eq!(checked.status.code(), Some(0));
     // pi/(2 K(sin(3/2))).
     for text in [said, String::from_utf8_lossy(&checked.stdout)] {
@@ -395,20 +446,36 @@ fn a_motion_is_proved_without_its_formula() {
 #[test]
 fn what_certify_writes_of_a_cycle_check_proves() {
     let folder = folder("cycle");
-    let problem = format!("{}/examples/certify/van-der-pol.toml", env!("CARGO_MANIFEST_DIR"));
+    let problem = format!(
+        "{}/examples/certify/van-der-pol.toml",
+        env!("CARGO_MANIFEST_DIR")
+    );
     let (file, document) = certified(&folder, &[&problem]);
     assert_eq!(document["ode"], "x''+g(x)*x'+h(x)=0");
     let path = file.to_str().expect("a path in text");
     let checked = run(&["check", path]);
-    assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
+    assert!(
+        checked.status.success(),
+        "{}",
+        String::from_utf8_lossy(&checked.stderr)
+    );
     let text = String::from_utf8_lossy(&checked.stdout).into_owned();
-    for expected in ["a limit cycle", "attracts, proved", "0.98472097664531065", "5.31649e-6"] {
+    for expected in [
+        "a limit cycle",
+        "attracts, proved",
+        "0.98472097664531065",
+        "5.31649e-6",
+    ] {
         assert!(text.contains(expected), "{expected}: {text}");
     }
-    let read: DampedCertificateDocument = serde_json::from_value(document.clone()).expect("a document");
+    let read: DampedCertificateDocument =
+        serde_json::from_value(document.clone()).expect("a document");
     let certificate = read.read().expect("a certificate");
     assert_eq!(json::damped_certificate(&certificate), read);
-    assert_eq!(run(&["check", path, "--tolerance", "1e-9"]).status.code(), Some(3));
+    assert_eq!(
+        run(&["check", path, "--tolerance", "1e-9"]).status.code(),
+        Some(3)
+    );
     // Tampered with, it is no proof.
     for tamper in [
         (|document: &mut Value| document["g"] = json!(["-1/2", "0", "501/1000"])) as fn(&mut Value),
@@ -424,7 +491,11 @@ fn what_certify_writes_of_a_cycle_check_proves() {
         let mut changed = document.clone();
         tamper(&mut changed);
         std::fs::write(&file, changed.to_string()).expect("the document is written");
-        assert_eq!(run(&["check", path]).status.code(), Some(1), "{changed:.80}");
+        assert_eq!(
+            run(&["check", path]).status.code(),
+            Some(1),
+            "{changed:.80}"
+        );
     }
 }
 
@@ -449,7 +520,12 @@ fn hostile_certificates_are_refused() {
 fn are_refused(arguments: &[&str], is_proof: IsProof) {
     let folder = folder("hostile");
     let (file, document) = certified(&folder, arguments);
-    let keys: Vec<String> = document.as_object().expect("an object").keys().cloned().collect();
+    let keys: Vec<String> = document
+        .as_object()
+        .expect("an object")
+        .keys()
+        .cloned()
+        .collect();
     let mut tried = 0;
     let mut refuse = |changed: &Value| {
         tried += 1;
@@ -481,9 +557,10 @@ fn are_refused(arguments: &[&str], is_proof: IsProof) {
         ] {
             let mut changed = document.clone();
             changed[key.as_str()] = value.clone();
-            // Without a formula it proves the motion alone, with another weight it may prove the same.
-            let harmless =
-                [("formula", json!(null)), ("sigma_log2", json!(-1))].contains(&(key.as_str(), value.clone()));
+            // Without a formula it proves the motion alone, with another weight it may prove the
+            // same.
+            let harmless = [("formula", json!(null)), ("sigma_log2", json!(-1))]
+                .contains(&(key.as_str(), value.clone()));
             assert!(!refuse(&changed) || harmless, "{key}: {value:.60}");
         }
     }
@@ -556,14 +633,26 @@ fn what_is_asked_for_in_vain_is_said() {
             1,
             "a proof has no picture",
         ),
-        (&["certify", "pendulum", "--at", "A=1", "--format", "csv"], 2, "table"),
+        (
+            &["certify", "pendulum", "--at", "A=1", "--format", "csv"],
+            2,
+            "table",
+        ),
         (
             &["certify", "examples/forced-duffing.toml", "--no-formula"],
             1,
             "nothing to find a driven motion by",
         ),
         (
-            &["certify", "pendulum", "--at", "A=1", "--no-formula", "--range", "1:2"],
+            &[
+                "certify",
+                "pendulum",
+                "--at",
+                "A=1",
+                "--no-formula",
+                "--range",
+                "1:2",
+            ],
             2,
             "cannot be used with",
         ),
@@ -579,8 +668,23 @@ fn what_is_asked_for_in_vain_is_said() {
             2,
             "--range is not in a certificate",
         ),
-        (&["check", "no-such-file.json"], 1, "cannot read no-such-file.json"),
-        (&["certify", "pendulum", "--at", "A=3/2", "--tolerance", "1e-4"], 3, ""),
+        (
+            &["check", "no-such-file.json"],
+            1,
+            "cannot read no-such-file.json",
+        ),
+        (
+            &[
+                "certify",
+                "pendulum",
+                "--at",
+                "A=3/2",
+                "--tolerance",
+                "1e-4",
+            ],
+            3,
+            "",
+        ),
     ] {
         let output = run(arguments);
         let errors = String::from_utf8_lossy(&output.stderr);
@@ -589,7 +693,8 @@ fn what_is_asked_for_in_vain_is_said() {
     }
 }
 
-/// The same impact from the other side is proved to be the same; what is no impact of equation (9) is refused.
+/// The same impact from the other side is proved to be the same; what is no impact of equation (9)
+/// is refused.
 #[test]
 fn an_impact_is_proved_from_either_side() {
     let numbers = |arguments: &[&str]| {
@@ -600,13 +705,20 @@ fn an_impact_is_proved_from_either_side() {
         proved.to_owned()
     };
     let right = numbers(&["--at", "gamma=1e6", "--at", "xc=0.323"]);
-    assert_eq!(numbers(&["--at", "gamma=1e6", "--at", "xc=-0.323", "--left"]), right);
+    assert_eq!(
+        numbers(&["--at", "gamma=1e6", "--at", "xc=-0.323", "--left"]),
+        right
+    );
     assert!(
         right.contains("0.0121060270598") && right.contains("2.06440760858"),
         "{right}"
     );
     for (arguments, code, expected) in [
-        (["--certify", "--compare"].as_slice(), 2, "cannot be used with"),
+        (
+            ["--certify", "--compare"].as_slice(),
+            2,
+            "cannot be used with",
+        ),
         (&["--certify", "--plot", "proof.svg"], 2, "draws no picture"),
         (&["--certify", "--format", "json"], 2, "has no JSON"),
         (&["--certify", "--format", "csv"], 2, "table"),
@@ -615,7 +727,11 @@ fn an_impact_is_proved_from_either_side() {
             2,
             "an equation of its own",
         ),
-        (&["--certify", "examples/impact-restitution.toml"], 2, "loses energy"),
+        (
+            &["--certify", "examples/impact-restitution.toml"],
+            2,
+            "loses energy",
+        ),
         (&["--certify", "--at", "A=0.2"], 1, "within reach"),
         (&["--certify", "--order", "2", "--tolerance", "1e-4"], 3, ""),
         (&["--certify", "--tolerance", "0.001"], 0, ""),

@@ -1,5 +1,6 @@
-//! JSON documents: what is printed is what the schema says and what reads back, every key is described, and a program that
-//! knows nothing but the standard library of Python rebuilds frequency and motion from them.
+//! JSON documents: what is printed is what the schema says and what reads back, every key is
+//! described, and a program that knows nothing but the standard library of Python rebuilds
+//! frequency and motion from them.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -7,9 +8,10 @@ use std::process::Command;
 
 use boon::{Compiler, SchemaIndex, Schemas};
 use lindstedt::export::json::{
-    self, AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument, DampedCertificateDocument,
-    FrictionDocument, ImpactComparisonDocument, ImpactDocument, Kind, LagrangianDocument, MaterialsDocument,
-    MotionDocument, MotionSweepDocument, OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
+    self, AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument,
+    DampedCertificateDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument, Kind,
+    LagrangianDocument, MaterialsDocument, MotionDocument, MotionSweepDocument,
+    OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
     SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument,
 };
 use lindstedt::method::numbers::evaluate;
@@ -42,7 +44,9 @@ fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let entries = std::fs::read_dir(folder).expect("a folder");
     let paths = entries.map(|entry| entry.expect("an entry").path());
-    let mut files: Vec<PathBuf> = paths.filter(|path| path.to_string_lossy().ends_with(ending)).collect();
+    let mut files: Vec<PathBuf> = paths
+        .filter(|path| path.to_string_lossy().ends_with(ending))
+        .collect();
     files.sort();
     files
 }
@@ -63,8 +67,11 @@ impl Published {
         let mut schemas = Schemas::new();
         let mut compiler = Compiler::new();
         let index = |kind: Kind| {
-            let schema = serde_json::from_str(&output(&["schema", kind.name()])).expect("a schema is JSON");
-            compiler.add_resource(kind.name(), schema).expect("a schema");
+            let schema =
+                serde_json::from_str(&output(&["schema", kind.name()])).expect("a schema is JSON");
+            compiler
+                .add_resource(kind.name(), schema)
+                .expect("a schema");
             (
                 kind,
                 compiler
@@ -93,7 +100,9 @@ fn reads_back(document: &Value) {
         let typed: T = serde_json::from_value(document.clone()).expect("a document reads");
         serde_json::to_value(typed).expect("a document is written")
     }
-    let kind = Kind::ALL.into_iter().find(|kind| document["schema"] == kind.schema());
+    let kind = Kind::ALL
+        .into_iter()
+        .find(|kind| document["schema"] == kind.schema());
     let written = match kind.expect("a known kind") {
         Kind::Solution => again::<SolutionDocument>(document),
         Kind::Comparison => again::<ComparisonDocument>(document),
@@ -168,7 +177,11 @@ fn documents() -> Vec<(String, Value)> {
         "frequency=18:20:3",
     ]);
     let driven = ["simulate", "x'' + x'/5 + x = F*cos(t)", "--from", "x=1"];
-    add(&[&driven[..], &["--sweep", "F=0:1:3", "--every", "2*pi", "--after", "20"]].concat());
+    add(&[
+        &driven[..],
+        &["--sweep", "F=0:1:3", "--every", "2*pi", "--after", "20"],
+    ]
+    .concat());
     add(&[&driven[..], &["--at", "F=1", "--section", "x'"]].concat());
     let links = "examples/lagrange/double-pendulum.toml";
     add(&[
@@ -183,9 +196,19 @@ fn documents() -> Vec<(String, Value)> {
     ]);
     add(&["simulate", "x'' + x + x^3 = 0", "--from", "x=1"]);
     add(&["simulate", "--integrator", "both"]);
-    add(&["simulate", "--sweep", "zeta=0.1:0.2:2", "--sweep", "alpha=0:0.1:3"]);
+    add(&[
+        "simulate",
+        "--sweep",
+        "zeta=0.1:0.2:2",
+        "--sweep",
+        "alpha=0:0.1:3",
+    ]);
     let three = ["gamma=1e4:1e6:2:log", "zeta=0.1,0.3,0.2", "alpha=0.1:0:2"];
-    add(&[&["simulate"], three.map(|axis| ["--sweep", axis]).as_flattened()].concat());
+    add(&[
+        &["simulate"],
+        three.map(|axis| ["--sweep", axis]).as_flattened(),
+    ]
+    .concat());
     add(&["friction"]);
     add(&["friction", "--alpha", "0.02", "--speed", "0.01"]);
     add(&["catalog"]);
@@ -268,7 +291,8 @@ fn innermost(document: &mut Value) -> &mut Value {
     document.pointer_mut(place).expect("an object")
 }
 
-/// A pinned document as it was printed: there, rounding noise and the number of steps are words, and a slope has two digits.
+/// A pinned document as it was printed: there, rounding noise and the number of steps are words,
+/// and a slope has two digits.
 fn unpinned(value: &mut Value) {
     match value {
         Value::String(text) if text == "noise" => *value = json!(0.0),
@@ -287,12 +311,15 @@ fn unpinned(value: &mut Value) {
     }
 }
 
-/// The schemas are files, so that the program need not make them; they are what the types say that write and read the documents.
+/// The schemas are files, so that the program need not make them; they are what the types say that
+/// write and read the documents.
 #[test]
 fn schemas_in_files_are_those_of_the_types() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/export/json/schemas");
     for kind in Kind::ALL {
-        let generated = serde_json::to_string_pretty(&kind.generated_schema()).expect("a schema is JSON") + "\n";
+        let generated = serde_json::to_string_pretty(&kind.generated_schema())
+            .expect("a schema is JSON")
+            + "\n";
         if generated != kind.json_schema() {
             let file = folder.join(format!("{}.json", kind.name()));
             std::fs::write(&file, generated).expect("a file that can be written");
@@ -356,7 +383,10 @@ fn every_key_is_described_and_no_other_is_allowed() {
         let printed = output(&["schema", kind.name()]);
         assert_eq!(printed.trim_end(), kind.json_schema().trim_end());
         let schema: Value = serde_json::from_str(&printed).expect("a schema is JSON");
-        assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
+        assert_eq!(
+            schema["$schema"],
+            "https://json-schema.org/draft/2020-12/schema"
+        );
         let (mut found, mut keys) = (Vec::new(), 0);
         faults(kind.name(), &schema, &mut found, &mut keys);
         assert_eq!(found, Vec::<String>::new());
@@ -378,7 +408,11 @@ fn every_key_is_described_and_no_other_is_allowed() {
         &["judged before `frequency`"],
     );
     said(Kind::Solution, &key("closed_form"), &["parameter m"]);
-    said(Kind::Solution, &key("displacement"), &["equilibrium included"]);
+    said(
+        Kind::Solution,
+        &key("displacement"),
+        &["equilibrium included"],
+    );
     said(Kind::Impact, "/$defs/Phase/description", &["s = t - clock"]);
     said(
         Kind::Impact,
@@ -396,7 +430,10 @@ fn an_unknown_kind_is_refused_with_the_known_ones() {
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2));
     assert!(output.stdout.is_empty());
-    assert!(Kind::ALL.iter().all(|kind| message.contains(kind.name())), "{message}");
+    assert!(
+        Kind::ALL.iter().all(|kind| message.contains(kind.name())),
+        "{message}"
+    );
 }
 
 #[test]
@@ -434,9 +471,18 @@ pub(super) fn python() -> Option<PathBuf> {
     Some(String::from_utf8(output.stdout).ok()?.trim().into())
 }
 
-/// Numbers that a reader prints for a document, a list for each line. It sees the standard library alone.
-fn by_reader(reader: &str, python: &Path, folder: &Path, document: &Value, times: &[f64]) -> Vec<Vec<Value>> {
-    let reader = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(reader);
+/// Numbers that a reader prints for a document, a list for each line. It sees the standard library
+/// alone.
+fn by_reader(
+    reader: &str,
+    python: &Path,
+    folder: &Path,
+    document: &Value,
+    times: &[f64],
+) -> Vec<Vec<Value>> {
+    let reader = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("examples")
+        .join(reader);
     let file = folder.join("document.json");
     std::fs::write(&file, document.to_string()).expect("the document is written");
     let output = Command::new(python)
@@ -446,7 +492,11 @@ fn by_reader(reader: &str, python: &Path, folder: &Path, document: &Value, times
         .args(times.iter().map(f64::to_string))
         .output()
         .expect("Python starts");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     let text = String::from_utf8(output.stdout).expect("text");
     text.lines()
         .map(|line| serde_json::from_str(line).expect("a list"))
@@ -489,7 +539,8 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
             let options = Options {
                 method: Some(method),
                 // Averaging begins with the first harmonic.
-                amplitude: (method == Method::Averaging).then_some(lindstedt::solution::AmplitudeConvention::Initial),
+                amplitude: (method == Method::Averaging)
+                    .then_some(lindstedt::solution::AmplitudeConvention::Initial),
                 ..Options::default()
             };
             let Ok(solution) = solve(&oscillator, &options) else {
@@ -508,7 +559,8 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
                 values.insert(Symbol::new(name), value).expect("a value");
             }
             let verification = judge(&oscillator, &solution, &values, 0.01).expect(&name);
-            let written = serde_json::to_value(json::solution(&solution, Some(&verification))).expect("JSON");
+            let written =
+                serde_json::to_value(json::solution(&solution, Some(&verification))).expect("JSON");
             let numbers: BTreeMap<Symbol, f64> = verification
                 .at
                 .iter()
@@ -520,13 +572,18 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
             let [line] = &by_reader("read_json.py", &python, &folder, &written, &times)[..] else {
                 panic!("{name}: one line");
             };
-            assert!(near(&line[0], omega, omega), "{name}: omega {} and {omega}", line[0]);
+            assert!(
+                near(&line[0], omega, omega),
+                "{name}: omega {} and {omega}",
+                line[0]
+            );
             for (t, x) in times.iter().zip(&line[1..]) {
                 let value = motion.evaluate(omega * t);
                 assert!(near(x, value, 1.0 + t), "{name}: x({t}) {x} and {value}");
             }
             if solution.limit_cycle.is_none() && size == "A" {
-                let start = solution.equilibrium.evaluate(&numbers).expect("a number") + numbers[&"A".into()];
+                let start = solution.equilibrium.evaluate(&numbers).expect("a number")
+                    + numbers[&"A".into()];
                 let found = motion.evaluate(0.0);
                 assert!(
                     (found - start).abs() < 1e-9,
@@ -537,20 +594,33 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
         }
         assert!(read >= least, "{equation}: only {read} methods");
     }
-    for file in files("examples", ".toml").into_iter().filter(|file| is_impact(file)) {
+    for file in files("examples", ".toml")
+        .into_iter()
+        .filter(|file| is_impact(file))
+    {
         let written = document(&["impact", &file.to_string_lossy()]);
         let impact: ImpactDocument = serde_json::from_value(written.clone()).expect("an impact");
         let derived = &impact.derived_phases;
-        let phases = || impact.phases.iter().chain(&impact.energy_phases).chain(derived);
+        let phases = || {
+            impact
+                .phases
+                .iter()
+                .chain(&impact.energy_phases)
+                .chain(derived)
+        };
         let middles: Vec<f64> = phases()
-            .flat_map(|phase| [0.0, 0.3, 0.9].map(|part| phase.start + part * (phase.end - phase.start)))
+            .flat_map(|phase| {
+                [0.0, 0.3, 0.9].map(|part| phase.start + part * (phase.end - phase.start))
+            })
             .collect();
         let lines = by_reader("read_json.py", &python, &folder, &written, &middles);
         assert_eq!(lines.len(), phases().count(), "{}", file.display());
         assert_eq!(derived.len(), 3, "{}", file.display());
         for (phase, line) in phases().map(json::impact::Phase::read).zip(lines) {
             assert_eq!(line[0], phase.name);
-            let inside = middles.iter().filter(|t| (phase.start..=phase.end).contains(t));
+            let inside = middles
+                .iter()
+                .filter(|t| (phase.start..=phase.end).contains(t));
             let expected: Vec<f64> = inside.map(|t| phase.at(*t).0).collect();
             assert_eq!(line.len(), 1 + expected.len());
             assert!(expected.len() >= 3);
@@ -565,7 +635,9 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
 
 #[test]
 fn a_reader_in_python_rebuilds_motions_whose_amplitude_changes_or_is_driven() {
-    let lines = include_str!("../../examples/read_slow_json.py").lines().count();
+    let lines = include_str!("../../examples/read_slow_json.py")
+        .lines()
+        .count();
     assert!(lines <= 40, "{lines} lines");
     let Some(python) = python() else {
         eprintln!("python3 is not here: the reader was not run");
@@ -574,7 +646,11 @@ fn a_reader_in_python_rebuilds_motions_whose_amplitude_changes_or_is_driven() {
     let folder = std::env::temp_dir().join(format!("lindstedt-slow-reader-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
     for (equation, at, method) in [
-        ("x'' + 2*zeta*x' + x + x^3 = 0", "A = 1, zeta = 1/20", Method::Averaging),
+        (
+            "x'' + 2*zeta*x' + x + x^3 = 0",
+            "A = 1, zeta = 1/20",
+            Method::Averaging,
+        ),
         (
             "x'' + 2*zeta*x' + x + x^3 = 0",
             "A = 1, zeta = 1/20",
@@ -585,8 +661,16 @@ fn a_reader_in_python_rebuilds_motions_whose_amplitude_changes_or_is_driven() {
             "A = 1, zeta = 1/20, g = 9.81, L = 2",
             Method::MultipleScales,
         ),
-        ("x'' + 2*zeta*x' + sin(x) = 0", "A = 1, zeta = 1/20", Method::Averaging),
-        ("x'' - mu*(1 - x^2)*x' + x = 0", "A = 1, mu = 1/10", Method::Averaging),
+        (
+            "x'' + 2*zeta*x' + sin(x) = 0",
+            "A = 1, zeta = 1/20",
+            Method::Averaging,
+        ),
+        (
+            "x'' - mu*(1 - x^2)*x' + x = 0",
+            "A = 1, mu = 1/10",
+            Method::Averaging,
+        ),
         (
             "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(w*t)",
             "F = 1/10, eps = 1/10, w = 9/10, zeta = 1/20",
@@ -602,8 +686,11 @@ fn a_reader_in_python_rebuilds_motions_whose_amplitude_changes_or_is_driven() {
         let solution = solve(&oscillator, &options).expect(&name);
         let values: Values = at.parse().expect("values");
         let verification = judge(&oscillator, &solution, &values, 0.05).expect(&name);
-        let written = serde_json::to_value(json::solution(&solution, Some(&verification))).expect("JSON");
-        let paths = motions(&oscillator, &solution, &values).expect(&name).expect(&name);
+        let written =
+            serde_json::to_value(json::solution(&solution, Some(&verification))).expect("JSON");
+        let paths = motions(&oscillator, &solution, &values)
+            .expect(&name)
+            .expect(&name);
         let samples = || {
             (0..5)
                 .map(|k| k * (paths.formula.len() - 1) / 4)
@@ -613,7 +700,11 @@ fn a_reader_in_python_rebuilds_motions_whose_amplitude_changes_or_is_driven() {
         let [line] = &by_reader("read_slow_json.py", &python, &folder, &written, &times)[..] else {
             panic!("{name}: one line");
         };
-        let size = paths.truth.iter().map(|sample| sample.1.abs()).fold(0.0, f64::max);
+        let size = paths
+            .truth
+            .iter()
+            .map(|sample| sample.1.abs())
+            .fold(0.0, f64::max);
         let deviation = verification.max_deviation.expect(&name);
         for ((formula, truth), x) in samples().zip(line) {
             let x = x.as_f64().expect("a number");
@@ -643,7 +734,13 @@ fn where_a_motion_settles_the_values_are_those_of_its_cycle() {
         ..Options::default()
     };
     let solution = solve(&oscillator, &options).expect("an answer");
-    let verification = judge(&oscillator, &solution, &"mu = 1/10".parse().expect("values"), 0.01).expect("a verdict");
+    let verification = judge(
+        &oscillator,
+        &solution,
+        &"mu = 1/10".parse().expect("values"),
+        0.01,
+    )
+    .expect("a verdict");
     let value = |name: &str| {
         verification
             .values

@@ -1,6 +1,8 @@
-//! One wrong input, one message: every file in `tests/errors/` is refused, located and helped, never a panic or a hang.
+//! One wrong input, one message: every file in `tests/errors/` is refused, located and helped,
+//! never a panic or a hang.
 //!
-//! `*.txt` is an equation on standard input; `*.toml` a problem file, for `impact`, `materials`, `optimize` or `audit` where its first line says so.
+//! `*.txt` is an equation on standard input; `*.toml` a problem file, for `impact`, `materials`,
+//! `optimize` or `audit` where its first line says so.
 
 use std::io::Write as _;
 use std::path::Path;
@@ -45,10 +47,18 @@ fn message(file: &Path) -> String {
     );
     assert!(output.stdout.is_empty(), "{path} printed a result");
     assert!(text.starts_with("error: "), "{path}: {text}");
-    for word in ["panicked", "internal error", "stopped after", "RUST_BACKTRACE"] {
+    for word in [
+        "panicked",
+        "internal error",
+        "stopped after",
+        "RUST_BACKTRACE",
+    ] {
         assert!(!text.contains(word), "{path}: {text}");
     }
-    format!("{text}exit code {}\n", output.status.code().unwrap_or_default())
+    format!(
+        "{text}exit code {}\n",
+        output.status.code().unwrap_or_default()
+    )
 }
 
 #[test]
@@ -60,9 +70,13 @@ fn every_wrong_input_gets_its_message() {
     // The folder of the checkout is nobody's business.
     settings.add_filter(concat!(env!("CARGO_MANIFEST_DIR"), "/"), "");
     settings.bind(|| {
-        insta::glob!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/errors"), "*.t*", |file| {
-            insta::assert_snapshot!("error", message(file));
-        });
+        insta::glob!(
+            concat!(env!("CARGO_MANIFEST_DIR"), "/tests/errors"),
+            "*.t*",
+            |file| {
+                insta::assert_snapshot!("error", message(file));
+            }
+        );
     });
 }
 

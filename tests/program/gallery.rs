@@ -1,4 +1,5 @@
-//! One file in `examples/`, one run of the program, one snapshot in text and one in JSON. To add a case, add a file.
+//! One file in `examples/`, one run of the program, one snapshot in text and one in JSON. To add a
+//! case, add a file.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -39,15 +40,17 @@ fn snapshots(body: impl FnOnce()) {
 
 /// `impact` for a file of that name, `derive` for any other.
 fn command_for(file: &Path) -> &'static str {
-    let name = file.file_name().map(|name| name.to_string_lossy().into_owned());
+    let name = file
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned());
     match name.is_some_and(|name| name.starts_with("impact")) {
         true => "impact",
         false => "derive",
     }
 }
 
-/// Floating-point numbers to eight digits, and what is rounding noise to its order of magnitude: the last digits
-/// depend on the machine's sine.
+/// Floating-point numbers to eight digits, and what is rounding noise to its order of magnitude:
+/// the last digits depend on the machine's sine.
 fn rounded(value: &mut Value) {
     match value {
         Value::Number(number) if number.is_f64() => {
@@ -75,12 +78,19 @@ fn rounded(value: &mut Value) {
                 }
             }
             for (key, entry) in map.iter_mut() {
-                let noise = entry.as_f64().map(f64::abs).is_some_and(|size| match key.as_str() {
-                    "max_deviation" | "residual" => size < 1e-8,
-                    "cos" | "sin" => is_noise(entry) && size > 0.0,
-                    _ => key.ends_with("_error") && size < 1e-8,
-                });
-                if noise { *entry = "noise".into() } else { rounded(entry) }
+                let noise = entry
+                    .as_f64()
+                    .map(f64::abs)
+                    .is_some_and(|size| match key.as_str() {
+                        "max_deviation" | "residual" => size < 1e-8,
+                        "cos" | "sin" => is_noise(entry) && size > 0.0,
+                        _ => key.ends_with("_error") && size < 1e-8,
+                    });
+                if noise {
+                    *entry = "noise".into()
+                } else {
+                    rounded(entry)
+                }
             }
         }
         _ => {}
@@ -95,15 +105,23 @@ fn is_noise(value: &Value) -> bool {
 #[test]
 fn every_example_prints_what_it_printed() {
     snapshots(|| {
-        insta::glob!(concat!(env!("CARGO_MANIFEST_DIR"), "/examples"), "*.toml", |file| {
-            let path = file.to_str().expect("a path in text");
-            insta::assert_snapshot!("text", output(&[command_for(file), path]));
-            insta::assert_snapshot!("latex", output(&[command_for(file), path, "--format", "latex"]));
-            let mut document: Value = serde_json::from_str(&output(&[command_for(file), path, "--format", "json"]))
-                .expect("the output is JSON");
-            rounded(&mut document);
-            insta::assert_json_snapshot!("json", document);
-        });
+        insta::glob!(
+            concat!(env!("CARGO_MANIFEST_DIR"), "/examples"),
+            "*.toml",
+            |file| {
+                let path = file.to_str().expect("a path in text");
+                insta::assert_snapshot!("text", output(&[command_for(file), path]));
+                insta::assert_snapshot!(
+                    "latex",
+                    output(&[command_for(file), path, "--format", "latex"])
+                );
+                let mut document: Value =
+                    serde_json::from_str(&output(&[command_for(file), path, "--format", "json"]))
+                        .expect("the output is JSON");
+                rounded(&mut document);
+                insta::assert_json_snapshot!("json", document);
+            }
+        );
     });
 }
 
@@ -127,9 +145,13 @@ fn every_comparison_prints_what_it_printed() {
             |file| {
                 let path = file.to_str().expect("a path in text");
                 insta::assert_snapshot!("compare-text", output(&["compare", path]));
-                insta::assert_snapshot!("compare-latex", output(&["compare", path, "--format", "latex"]));
+                insta::assert_snapshot!(
+                    "compare-latex",
+                    output(&["compare", path, "--format", "latex"])
+                );
                 let mut document: Value =
-                    serde_json::from_str(&output(&["compare", path, "--format", "json"])).expect("the output is JSON");
+                    serde_json::from_str(&output(&["compare", path, "--format", "json"]))
+                        .expect("the output is JSON");
                 rounded(&mut document);
                 insta::assert_json_snapshot!("compare-json", document);
             }
@@ -137,7 +159,8 @@ fn every_comparison_prints_what_it_printed() {
     });
 }
 
-/// Steady states in text; of one of them LaTeX, the head of the comma-separated values, and every twentieth point in JSON.
+/// Steady states in text; of one of them LaTeX, the head of the comma-separated values, and every
+/// twentieth point in JSON.
 #[test]
 fn every_response_prints_what_it_printed() {
     snapshots(|| {
@@ -150,12 +173,16 @@ fn every_response_prints_what_it_printed() {
             }
         );
         let path = "examples/response/duffing.toml";
-        insta::assert_snapshot!("response-latex", output(&["response", path, "--format", "latex"]));
+        insta::assert_snapshot!(
+            "response-latex",
+            output(&["response", path, "--format", "latex"])
+        );
         let table = output(&["response", path, "--format", "csv"]);
         let head: Vec<&str> = table.lines().take(2).collect();
         insta::assert_snapshot!("response-csv", head.join("\n"));
         let mut document: Value =
-            serde_json::from_str(&output(&["response", path, "--format", "json"])).expect("the output is JSON");
+            serde_json::from_str(&output(&["response", path, "--format", "json"]))
+                .expect("the output is JSON");
         for list in ["branches", "backbone"] {
             for points in document[list].as_array_mut().expect("lists") {
                 let points = points.as_array_mut().expect("points");
@@ -199,9 +226,13 @@ fn every_audit_prints_what_it_printed() {
             |file| {
                 let path = file.to_str().expect("a path in text");
                 insta::assert_snapshot!("audit-text", output(&["audit", path]));
-                insta::assert_snapshot!("audit-latex", output(&["audit", path, "--format", "latex"]));
+                insta::assert_snapshot!(
+                    "audit-latex",
+                    output(&["audit", path, "--format", "latex"])
+                );
                 let mut document: Value =
-                    serde_json::from_str(&output(&["audit", path, "--format", "json"])).expect("the output is JSON");
+                    serde_json::from_str(&output(&["audit", path, "--format", "json"]))
+                        .expect("the output is JSON");
                 rounded(&mut document);
                 insta::assert_json_snapshot!("audit-json", document);
             }
@@ -219,7 +250,10 @@ fn every_certificate_prints_what_it_printed() {
             |file| {
                 let path = file.to_str().expect("a path in text");
                 insta::assert_snapshot!("certify-text", output(&["certify", path]));
-                insta::assert_snapshot!("certify-latex", output(&["certify", path, "--format", "latex"]));
+                insta::assert_snapshot!(
+                    "certify-latex",
+                    output(&["certify", path, "--format", "latex"])
+                );
             }
         );
         let cubic = "examples/certify/cubic-pendulum.toml";
@@ -230,7 +264,8 @@ fn every_certificate_prints_what_it_printed() {
     });
 }
 
-/// Every mechanism, its equations of motion and its groups, in text, LaTeX and JSON; the paper's among them.
+/// Every mechanism, its equations of motion and its groups, in text, LaTeX and JSON; the paper's
+/// among them.
 #[test]
 fn every_mechanism_prints_what_it_printed() {
     snapshots(|| {
@@ -240,17 +275,24 @@ fn every_mechanism_prints_what_it_printed() {
             |file| {
                 let path = file.to_str().expect("a path in text");
                 insta::assert_snapshot!("lagrange-text", output(&["lagrange", path]));
-                insta::assert_snapshot!("lagrange-latex", output(&["lagrange", path, "--format", "latex"]));
+                insta::assert_snapshot!(
+                    "lagrange-latex",
+                    output(&["lagrange", path, "--format", "latex"])
+                );
                 let mut document: Value =
-                    serde_json::from_str(&output(&["lagrange", path, "--format", "json"])).expect("the output is JSON");
+                    serde_json::from_str(&output(&["lagrange", path, "--format", "json"]))
+                        .expect("the output is JSON");
                 rounded(&mut document);
                 insta::assert_json_snapshot!("lagrange-json", document);
             }
         );
         insta::assert_snapshot!("lagrange-paper-text", output(&["lagrange"]));
-        insta::assert_snapshot!("lagrange-paper-latex", output(&["lagrange", "--format", "latex"]));
-        let mut document: Value =
-            serde_json::from_str(&output(&["lagrange", "--format", "json"])).expect("the output is JSON");
+        insta::assert_snapshot!(
+            "lagrange-paper-latex",
+            output(&["lagrange", "--format", "latex"])
+        );
+        let mut document: Value = serde_json::from_str(&output(&["lagrange", "--format", "json"]))
+            .expect("the output is JSON");
         rounded(&mut document);
         insta::assert_json_snapshot!("lagrange-paper-json", document);
         let links = "examples/lagrange/double-pendulum.toml";
@@ -291,9 +333,13 @@ fn every_stability_prints_what_it_printed() {
             |file| {
                 let path = file.to_str().expect("a path in text");
                 insta::assert_snapshot!("stability-text", output(&["stability", path]));
-                insta::assert_snapshot!("stability-latex", output(&["stability", path, "--format", "latex"]));
-                let mut document: Value = serde_json::from_str(&output(&["stability", path, "--format", "json"]))
-                    .expect("the output is JSON");
+                insta::assert_snapshot!(
+                    "stability-latex",
+                    output(&["stability", path, "--format", "latex"])
+                );
+                let mut document: Value =
+                    serde_json::from_str(&output(&["stability", path, "--format", "json"]))
+                        .expect("the output is JSON");
                 rounded(&mut document);
                 insta::assert_json_snapshot!("stability-json", document);
             }
@@ -302,7 +348,8 @@ fn every_stability_prints_what_it_printed() {
     });
 }
 
-/// A main mass with its damper, in text, JSON and comma-separated values, and driven at several frequencies.
+/// A main mass with its damper, in text, JSON and comma-separated values, and driven at several
+/// frequencies.
 #[test]
 fn every_main_mass_prints_what_it_printed() {
     snapshots(|| {
@@ -338,20 +385,28 @@ fn every_study_of_materials_prints_what_it_printed() {
             |file| {
                 let path = file.to_str().expect("a path in text");
                 insta::assert_snapshot!("materials-text", output(&["materials", path]));
-                insta::assert_snapshot!("materials-latex", output(&["materials", path, "--format", "latex"]));
-                let mut document: Value = serde_json::from_str(&output(&["materials", path, "--format", "json"]))
-                    .expect("the output is JSON");
+                insta::assert_snapshot!(
+                    "materials-latex",
+                    output(&["materials", path, "--format", "latex"])
+                );
+                let mut document: Value =
+                    serde_json::from_str(&output(&["materials", path, "--format", "json"]))
+                        .expect("the output is JSON");
                 rounded(&mut document);
                 insta::assert_json_snapshot!("materials-json", document);
             }
         );
-        let table_2 = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/materials/table-2.toml");
+        let table_2 = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/examples/materials/table-2.toml"
+        );
         assert_eq!(output(&["materials"]), output(&["materials", table_2]));
     });
 }
 
-/// Searches for the best damper, in text, LaTeX, JSON and comma-separated values. Closed forms, so the numbers are those of any machine up to its
-/// powers and logarithms; a search multiplies the last digits of those, and six are shown.
+/// Searches for the best damper, in text, LaTeX, JSON and comma-separated values. Closed forms, so
+/// the numbers are those of any machine up to its powers and logarithms; a search multiplies the
+/// last digits of those, and six are shown.
 #[test]
 fn every_search_prints_what_it_printed() {
     snapshots(|| {
@@ -363,26 +418,42 @@ fn every_search_prints_what_it_printed() {
                 insta::assert_snapshot!("optimize-text", output(&["optimize", path]));
             }
         );
-        let of = |name: &str| format!("{}/examples/optimize/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let of = |name: &str| {
+            format!(
+                "{}/examples/optimize/{name}.toml",
+                env!("CARGO_MANIFEST_DIR")
+            )
+        };
         let materials = of("materials");
-        insta::assert_snapshot!("optimize-latex", output(&["optimize", &materials, "--format", "latex"]));
-        insta::assert_snapshot!("optimize-csv", output(&["optimize", &materials, "--format", "csv"]));
+        insta::assert_snapshot!(
+            "optimize-latex",
+            output(&["optimize", &materials, "--format", "latex"])
+        );
+        insta::assert_snapshot!(
+            "optimize-csv",
+            output(&["optimize", &materials, "--format", "csv"])
+        );
         insta::assert_snapshot!(
             "optimize-front-csv",
             output(&["optimize", &of("front"), "--format", "csv"])
         );
         let mut document: Value =
-            serde_json::from_str(&output(&["optimize", &materials, "--format", "json"])).expect("the output is JSON");
+            serde_json::from_str(&output(&["optimize", &materials, "--format", "json"]))
+                .expect("the output is JSON");
         rounded(&mut document);
         insta::assert_json_snapshot!("json@optimize-materials", document);
         insta::assert_snapshot!("help-optimize", output(&["optimize", "--help"]));
     });
 }
 
-/// The table of every method on one impact, in text, LaTeX and JSON: one for a page, one for a narrow terminal.
+/// The table of every method on one impact, in text, LaTeX and JSON: one for a page, one for a
+/// narrow terminal.
 #[test]
 fn every_method_on_one_impact_prints_what_it_printed() {
-    let preloaded = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/impact-preloaded.toml");
+    let preloaded = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/examples/impact-preloaded.toml"
+    );
     let of_own = [
         "impact",
         "x'' + x + x^2 = 0",
@@ -413,13 +484,15 @@ fn every_method_on_one_impact_prints_what_it_printed() {
             output(&["impact", "--certify", "--format", "latex"])
         );
         let mut document: Value =
-            serde_json::from_str(&output(&["impact", "--compare", "--format", "json"])).expect("the output is JSON");
+            serde_json::from_str(&output(&["impact", "--compare", "--format", "json"]))
+                .expect("the output is JSON");
         rounded(&mut document);
         insta::assert_json_snapshot!("json@impact-compare", document);
     });
 }
 
-/// The study of friction in every format: where the arctangent creeps, and, with less friction, where it swings.
+/// The study of friction in every format: where the arctangent creeps, and, with less friction,
+/// where it swings.
 #[test]
 fn the_study_of_friction_prints_what_it_printed() {
     let weak = ["friction", "--alpha", "0.02", "--speed", "0.01"];
@@ -427,8 +500,8 @@ fn the_study_of_friction_prints_what_it_printed() {
         insta::assert_snapshot!("friction-text", output(&["friction"]));
         insta::assert_snapshot!("friction-weak", output(&weak));
         insta::assert_snapshot!("friction-latex", output(&["friction", "--format", "latex"]));
-        let mut document: Value =
-            serde_json::from_str(&output(&["friction", "--format", "json"])).expect("the output is JSON");
+        let mut document: Value = serde_json::from_str(&output(&["friction", "--format", "json"]))
+            .expect("the output is JSON");
         rounded(&mut document);
         insta::assert_json_snapshot!("json@friction", document);
         insta::assert_snapshot!("help-friction", output(&["friction", "--help"]));
@@ -443,9 +516,17 @@ fn every_example_reads_back_to_the_same_solution() {
         .filter_map(Result::ok)
         .map(|entry| entry.path());
     let mut count = 0;
-    for file in files.filter(|file| file.extension().is_some_and(|extension| extension == "toml")) {
+    for file in files.filter(|file| {
+        file.extension()
+            .is_some_and(|extension| extension == "toml")
+    }) {
         let command = command_for(&file);
-        let text = output(&[command, file.to_str().expect("a path in text"), "--format", "json"]);
+        let text = output(&[
+            command,
+            file.to_str().expect("a path in text"),
+            "--format",
+            "json",
+        ]);
         let mut document: Value = serde_json::from_str(&text).expect("the output is JSON");
         if command == "derive" {
             let read = read_solution(&document).expect("a solution");
@@ -462,13 +543,19 @@ fn every_example_reads_back_to_the_same_solution() {
                 list("phases")
             };
             for (phase, entry) in phases.iter().zip(&entries) {
-                assert_eq!(phase.closed_form(), entry["closed_form"].as_str().expect("text"));
+                assert_eq!(
+                    phase.closed_form(),
+                    entry["closed_form"].as_str().expect("text")
+                );
                 let (x, velocity) = phase.at(phase.end);
                 assert_eq!(Some(x), entry["end_state"]["x"].as_f64());
                 assert_eq!(Some(velocity), entry["end_state"]["velocity"].as_f64());
             }
             for law in [&document["law"], &document["derived_law"]["law"]] {
-                assert!(law.is_null() || read_solution(law).is_ok(), "the law is a solution");
+                assert!(
+                    law.is_null() || read_solution(law).is_ok(),
+                    "the law is a solution"
+                );
             }
         }
         count += 1;
@@ -507,51 +594,137 @@ fn no_command_is_the_impact_of_the_paper() {
 fn exit_codes_are_those_of_the_manual() {
     for (arguments, code) in [
         (
-            vec!["derive", "x'' + sin(x) = 0", "--at", "A=1.5", "--tolerance", "0.01"],
+            vec![
+                "derive",
+                "x'' + sin(x) = 0",
+                "--at",
+                "A=1.5",
+                "--tolerance",
+                "0.01",
+            ],
             0,
         ),
         (
-            vec!["derive", "x'' + sin(x) = 0", "--at", "A=1.5", "--tolerance", "1e-6"],
+            vec![
+                "derive",
+                "x'' + sin(x) = 0",
+                "--at",
+                "A=1.5",
+                "--tolerance",
+                "1e-6",
+            ],
             3,
         ),
-        (vec!["derive", "damped-pendulum", "--method", "lindstedt-poincare"], 1),
+        (
+            vec![
+                "derive",
+                "damped-pendulum",
+                "--method",
+                "lindstedt-poincare",
+            ],
+            1,
+        ),
         (vec!["derive", "x'' + eps*x^3 + x", "--at", "A=1"], 1),
         (vec!["derive", "x'' + sin(x) = 0", "--at", "B=1"], 2),
         (vec!["derive", "x'' + sin(x) = 0", "--method", "magic"], 2),
         (vec!["compare", "pendulum", "--at", "A=1.5"], 0),
-        (vec!["compare", "pendulum", "--at", "A=1.5", "--tolerance", "0.01"], 3),
-        (vec!["compare", "pendulum", "--at", "A=1", "--tolerance", "0.01"], 0),
+        (
+            vec![
+                "compare",
+                "pendulum",
+                "--at",
+                "A=1.5",
+                "--tolerance",
+                "0.01",
+            ],
+            3,
+        ),
+        (
+            vec!["compare", "pendulum", "--at", "A=1", "--tolerance", "0.01"],
+            0,
+        ),
         (vec!["compare", "pendulum", "--at", "A=4"], 1),
         (vec!["compare", "duffing", "--at", "A=1"], 1),
         (vec!["compare", "duffing", "--at", "B=1"], 2),
         (
-            vec!["compare", "magnetic-wire", "--at", "A=0.1", "--at", "lambda=0.1"],
+            vec![
+                "compare",
+                "magnetic-wire",
+                "--at",
+                "A=0.1",
+                "--at",
+                "lambda=0.1",
+            ],
             0,
         ),
         (
-            vec!["derive", "magnetic-wire", "--at", "A=0.1", "--at", "lambda=0.1"],
+            vec![
+                "derive",
+                "magnetic-wire",
+                "--at",
+                "A=0.1",
+                "--at",
+                "lambda=0.1",
+            ],
             0,
         ),
         (vec!["compare", "x'' + x + tanh(x') = 0", "--at", "A=1"], 1),
-        (vec!["derive", "duffing", "--method", "pade", "--order", "3,2"], 0),
-        (vec!["derive", "duffing", "--method", "pade", "--order", "3"], 2),
-        (vec!["derive", "duffing", "--order", "3,2"], 2),
         (
-            vec!["derive", "duffing", "--method", "hermite-pade", "--order", "2,2,2"],
+            vec!["derive", "duffing", "--method", "pade", "--order", "3,2"],
             0,
         ),
         (
-            vec!["derive", "duffing", "--method", "hermite-pade", "--order", "2,2"],
+            vec!["derive", "duffing", "--method", "pade", "--order", "3"],
             2,
         ),
-        (vec!["derive", "duffing", "--method", "pade", "--order", "2,2,2"], 2),
+        (vec!["derive", "duffing", "--order", "3,2"], 2),
         (
-            vec!["derive", "duffing", "--method", "homotopy-analysis", "--hbar", "-1"],
+            vec![
+                "derive",
+                "duffing",
+                "--method",
+                "hermite-pade",
+                "--order",
+                "2,2,2",
+            ],
+            0,
+        ),
+        (
+            vec![
+                "derive",
+                "duffing",
+                "--method",
+                "hermite-pade",
+                "--order",
+                "2,2",
+            ],
+            2,
+        ),
+        (
+            vec!["derive", "duffing", "--method", "pade", "--order", "2,2,2"],
+            2,
+        ),
+        (
+            vec![
+                "derive",
+                "duffing",
+                "--method",
+                "homotopy-analysis",
+                "--hbar",
+                "-1",
+            ],
             0,
         ),
         (vec!["derive", "duffing", "--hbar", "-1"], 2),
         (
-            vec!["derive", "duffing", "--method", "homotopy-analysis", "--hbar", "x"],
+            vec![
+                "derive",
+                "duffing",
+                "--method",
+                "homotopy-analysis",
+                "--hbar",
+                "x",
+            ],
             2,
         ),
         (vec!["impact", "--tolerance", "0.1"], 0),
@@ -564,8 +737,16 @@ fn exit_codes_are_those_of_the_manual() {
     ] {
         let output = run(&arguments);
         assert_eq!(output.status.code(), Some(code), "{arguments:?}");
-        assert_eq!(output.stdout.is_empty(), code == 1 || code == 2, "{arguments:?}");
-        assert_eq!(output.stderr.is_empty(), code == 0 || code == 3, "{arguments:?}");
+        assert_eq!(
+            output.stdout.is_empty(),
+            code == 1 || code == 2,
+            "{arguments:?}"
+        );
+        assert_eq!(
+            output.stderr.is_empty(),
+            code == 0 || code == 3,
+            "{arguments:?}"
+        );
     }
 }
 
@@ -577,7 +758,10 @@ fn latex_documents() -> Vec<(String, String)> {
         .filter_map(Result::ok)
         .map(|entry| entry.path());
     let mut documents: Vec<(String, String)> = files
-        .filter(|file| file.extension().is_some_and(|extension| extension == "toml"))
+        .filter(|file| {
+            file.extension()
+                .is_some_and(|extension| extension == "toml")
+        })
         .map(|file| {
             let path = file.to_str().expect("a path in text");
             (
@@ -617,7 +801,9 @@ fn latex_documents() -> Vec<(String, String)> {
         "homotopy-analysis",
     ] {
         for equation in ["pendulum", "duffing"] {
-            let arguments = ["derive", equation, "--method", method, "--steps", "--format", "latex"];
+            let arguments = [
+                "derive", equation, "--method", method, "--steps", "--format", "latex",
+            ];
             documents.push((format!("{method} {equation}"), output(&arguments)));
         }
     }
@@ -628,7 +814,10 @@ fn latex_documents() -> Vec<(String, String)> {
             output(&["materials", &path, "--format", "latex"]),
         ));
     }
-    documents.push(("catalog".to_owned(), output(&["catalog", "--format", "latex"])));
+    documents.push((
+        "catalog".to_owned(),
+        output(&["catalog", "--format", "latex"]),
+    ));
     documents.sort();
     documents
 }
@@ -696,7 +885,10 @@ fn latex_is_balanced_and_uses_known_commands_only() {
         "chi",
     ];
     for (name, document) in latex_documents() {
-        let lines: Vec<&str> = document.lines().filter(|line| !line.starts_with('%')).collect();
+        let lines: Vec<&str> = document
+            .lines()
+            .filter(|line| !line.starts_with('%'))
+            .collect();
         let text = lines.join("\n");
         let (mut depth, mut delimiters) = (0_i32, 0_i32);
         for letter in text.chars() {
@@ -705,14 +897,23 @@ fn latex_is_balanced_and_uses_known_commands_only() {
         }
         assert_eq!(depth, 0, "{name}: braces");
         for command in text.split('\\').skip(1) {
-            let word: String = command.chars().take_while(char::is_ascii_alphabetic).collect();
-            assert!(word.is_empty() || COMMANDS.contains(&word.as_str()), "{name}: \\{word}");
+            let word: String = command
+                .chars()
+                .take_while(char::is_ascii_alphabetic)
+                .collect();
+            assert!(
+                word.is_empty() || COMMANDS.contains(&word.as_str()),
+                "{name}: \\{word}"
+            );
             delimiters += i32::from(word == "left") - i32::from(word == "right");
             assert!(delimiters >= 0, "{name}: \\right without \\left");
         }
         assert_eq!(delimiters, 0, "{name}: \\left without \\right");
         let aligned = text.contains("\\begin{align*}");
-        assert!(aligned || name == "catalog" || name.starts_with("compare"), "{name}");
+        assert!(
+            aligned || name == "catalog" || name.starts_with("compare"),
+            "{name}"
+        );
         assert!(text.matches("\\begin{").count() == text.matches("\\end{").count());
     }
 }
@@ -726,7 +927,10 @@ fn latex_compiles_where_latex_is() {
     }
     let folder = std::env::temp_dir().join(format!("lindstedt-latex-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
-    let bodies: Vec<String> = latex_documents().into_iter().map(|(_, document)| document).collect();
+    let bodies: Vec<String> = latex_documents()
+        .into_iter()
+        .map(|(_, document)| document)
+        .collect();
     let head = "\\documentclass{article}\n\\usepackage{amsmath}\n\\begin{document}\n";
     std::fs::write(
         folder.join("all.tex"),
@@ -739,7 +943,11 @@ fn latex_compiles_where_latex_is() {
         .current_dir(&folder)
         .output()
         .expect("pdflatex starts");
-    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stdout));
+    assert!(
+        run.status.success(),
+        "{}",
+        String::from_utf8_lossy(&run.stdout)
+    );
     std::fs::remove_dir_all(folder).expect("the folder goes");
 }
 

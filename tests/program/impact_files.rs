@@ -1,11 +1,12 @@
-//! One file, read by `lindstedt impact` and by `lindstedt simulate`: the same barrier, the same bodies, the same words where numbers are
-//! extreme.
+//! One file, read by `lindstedt impact` and by `lindstedt simulate`: the same barrier, the same
+//! bodies, the same words where numbers are extreme.
 
 use std::process::Command;
 
 use serde_json::Value;
 
-/// A file in a folder of its own, and what a command prints of it: standard output and standard error.
+/// A file in a folder of its own, and what a command prints of it: standard output and standard
+/// error.
 fn of_text(name: &str, text: &str, arguments: &[&str]) -> (String, String) {
     let path = std::env::temp_dir().join(format!("lindstedt-{name}-{}.toml", std::process::id()));
     std::fs::write(&path, text).expect("a file");
@@ -20,7 +21,8 @@ fn of_text(name: &str, text: &str, arguments: &[&str]) -> (String, String) {
     (text(output.stdout), text(output.stderr))
 }
 
-/// A barrier on the left, released on the right, is the mirror image: integrated, by closed forms, swept.
+/// A barrier on the left, released on the right, is the mirror image: integrated, by closed forms,
+/// swept.
 #[test]
 fn a_barrier_on_the_left_is_the_mirror_image() {
     let damped = "[damping]\nzeta = 0.02\n[contact]\nmu_over_gamma = 0.1\n";
@@ -34,7 +36,10 @@ fn a_barrier_on_the_left_is_the_mirror_image() {
         let (left, right) = (document(&left), document(&right));
         let number = |value: &Value| value.as_f64().expect("a number");
         assert_eq!(left["rest_time"], right["rest_time"]);
-        assert_eq!(number(&left["final_state"]["x"]), -number(&right["final_state"]["x"]));
+        assert_eq!(
+            number(&left["final_state"]["x"]),
+            -number(&right["final_state"]["x"])
+        );
         let impacts = |document: &Value| document["impacts"].as_array().expect("impacts").clone();
         assert!(!impacts(&left).is_empty() && impacts(&left).len() == impacts(&right).len());
         for (left, right) in impacts(&left).iter().zip(&impacts(&right)) {
@@ -58,20 +63,32 @@ fn a_barrier_on_the_left_is_the_mirror_image() {
         rows.map(|row| row.split(',').skip(1).take(5).map(str::to_owned).collect())
             .collect()
     };
-    assert_eq!(swept(&left, "barrier=-0.2,-0.4"), swept(&right, "barrier=0.2,0.4"));
-    assert_eq!(swept(&left, "amplitude=1,1.4"), swept(&right, "amplitude=1,1.4"));
+    assert_eq!(
+        swept(&left, "barrier=-0.2,-0.4"),
+        swept(&right, "barrier=0.2,0.4")
+    );
+    assert_eq!(
+        swept(&left, "amplitude=1,1.4"),
+        swept(&right, "amplitude=1,1.4")
+    );
     // Where no single barrier is on a side and no release either, it would change nothing.
     for barrier in ["[-0.3, 0.4]", "false"] {
-        let text = format!("[pendulum]\nstart = 0.1\nspeed = 1\nside = \"left\"\nbarrier = {barrier}\n");
+        let text =
+            format!("[pendulum]\nstart = 0.1\nspeed = 1\nside = \"left\"\nbarrier = {barrier}\n");
         let error = of_text("side", &text, &["simulate"]).1;
-        assert!(error.contains("`[pendulum] side` changes nothing"), "{error}");
+        assert!(
+            error.contains("`[pendulum] side` changes nothing"),
+            "{error}"
+        );
     }
 }
 
-/// The bodies of an impact are those of a simulation, and the barrier of the one is that of the other.
+/// The bodies of an impact are those of a simulation, and the barrier of the one is that of the
+/// other.
 #[test]
 fn a_file_of_two_elastic_bodies_is_simulated_as_it_is_solved() {
-    let bodies = "[sphere]\nmodulus = 2e11\npoisson = 0.3\n[barrier]\nmodulus = 2e9\npoisson = 0.4\n";
+    let bodies =
+        "[sphere]\nmodulus = 2e11\npoisson = 0.3\n[barrier]\nmodulus = 2e9\npoisson = 0.4\n";
     let gamma = |command: &str| {
         let printed = of_text("bodies", bodies, &[command]).0;
         let line = printed
@@ -85,8 +102,16 @@ fn a_file_of_two_elastic_bodies_is_simulated_as_it_is_solved() {
     // 1/E = (1 - 0.16)/2e9 + (1 - 0.09)/2e11, against 1.439e9 and 3.0407e7 of the paper.
     let modulus = 1.0 / (0.84 / 2e9 + 0.91 / 2e11);
     let found: f64 = gamma("simulate").parse().expect("a number");
-    assert!((found / 3.04067e7 / (modulus / 1.439e9) - 1.0).abs() < 1e-5, "{found}");
-    let error = of_text("bodies", bodies, &["simulate", "--sweep", "modulus=1e8,1e9"]).1;
+    assert!(
+        (found / 3.04067e7 / (modulus / 1.439e9) - 1.0).abs() < 1e-5,
+        "{found}"
+    );
+    let error = of_text(
+        "bodies",
+        bodies,
+        &["simulate", "--sweep", "modulus=1e8,1e9"],
+    )
+    .1;
     assert!(error.contains("two bodies"), "{error}");
     // A key of several readers names each command once.
     let error = of_text("bodies", "[run]\nduration = 20\n", &["impact"]).1;
@@ -98,13 +123,19 @@ fn a_barrier_where_the_swing_turns_is_said_to_be_touched_by_rounding() {
     let text = "[pendulum]\namplitude = 1.5\nbarrier = 1.5\n[contact]\ngamma = 1e6\n";
     let (printed, error) = of_text("turn", text, &["simulate"]);
     let said = "rounding decides whether it is touched";
-    assert!(printed.contains(said) || error.contains(said), "{printed}{error}");
+    assert!(
+        printed.contains(said) || error.contains(said),
+        "{printed}{error}"
+    );
     let (printed, error) = of_text(
         "turn",
         &text.replace("barrier = 1.5", "barrier = 1.4999"),
         &["simulate"],
     );
-    assert!(!printed.contains(said) && !error.contains(said), "{printed}{error}");
+    assert!(
+        !printed.contains(said) && !error.contains(said),
+        "{printed}{error}"
+    );
 }
 
 /// Numbers far beyond any material have answers, or a refusal that says what is extreme about them.

@@ -1,4 +1,5 @@
-//! The program as its users run it: one file a subject, all in one program, so that they share the processor's cores.
+//! The program as its users run it: one file a subject, all in one program, so that they share the
+//! processor's cores.
 
 mod audit;
 mod catalog;

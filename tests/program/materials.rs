@@ -1,5 +1,6 @@
-//! Barriers of several materials: the contact against formulas written out here in SI units, the rest time against Runge-Kutta, what
-//! is held fixed against what must follow from it, and the page that tells it.
+//! Barriers of several materials: the contact against formulas written out here in SI units, the
+//! rest time against Runge-Kutta, what is held fixed against what must follow from it, and the page
+//! that tells it.
 
 use std::f64::consts::PI;
 use std::process::{Command, Output};
@@ -8,8 +9,8 @@ use lindstedt::export::decimal;
 use lindstedt::export::{json, text};
 use lindstedt::impact::contact::HuntCrossley;
 use lindstedt::impact::{
-    ContactDamping, Integrator, MaterialQuestion, MaterialRow, MaterialStudy, Model, Settings, Start, course, simulate,
-    study_materials,
+    ContactDamping, Integrator, MaterialQuestion, MaterialRow, MaterialStudy, Model, Settings,
+    Start, course, simulate, study_materials,
 };
 use lindstedt::problem::Problem;
 
@@ -25,7 +26,8 @@ fn run(arguments: &[&str]) -> Output {
         .expect("the program starts")
 }
 
-/// Depth and duration of a Hertz contact without loss, by its energy: dd/dt = sqrt(v^2 - (4 k/(5 m)) d^(5/2)), with d = D (1 - w^2).
+/// Depth and duration of a Hertz contact without loss, by its energy: dd/dt = sqrt(v^2 - (4 k/(5
+/// m)) d^(5/2)), with d = D (1 - w^2).
 fn hertz(mass: f64, stiffness: f64, speed: f64) -> [f64; 2] {
     let depth = (1.25 * mass * speed * speed / stiffness).powf(0.4);
     const POINTS: i32 = 20_000;
@@ -54,26 +56,44 @@ fn the_first_contact_is_that_of_hertz_where_nothing_is_lost() {
             let [depth, duration] = hertz(design.mass, stiffness, first.speed);
             // Gravity acts in the contact as well.
             let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 1e-3;
-            assert!(near(first.penetration, depth), "{}: {depth}", row.material.name);
-            assert!(near(first.duration, duration), "{}: {duration}", row.material.name);
+            assert!(
+                near(first.penetration, depth),
+                "{}: {depth}",
+                row.material.name
+            );
+            assert!(
+                near(first.duration, duration),
+                "{}: {duration}",
+                row.material.name
+            );
             let force = stiffness * depth.powf(1.5);
-            assert!(near(first.peak_force, force), "{}: {force}", row.material.name);
+            assert!(
+                near(first.peak_force, force),
+                "{}: {force}",
+                row.material.name
+            );
             let modulus = row.material.modulus.value();
-            let pressure = (6.0 * force * modulus.powi(2) / (PI.powi(3) * design.radius.powi(2))).cbrt();
-            assert!(near(first.peak_pressure, pressure), "{}: {pressure}", row.material.name);
+            let pressure =
+                (6.0 * force * modulus.powi(2) / (PI.powi(3) * design.radius.powi(2))).cbrt();
+            assert!(
+                near(first.peak_pressure, pressure),
+                "{}: {pressure}",
+                row.material.name
+            );
         }
     }
 }
 
 #[test]
 fn the_restitution_is_that_of_hunt_and_crossley() {
-    let study = study("[contact]\nlambda = 0.4\n[[material]]\nname = \"Own\"\nmodulus = 1e9\nlambda = 1.5");
+    let study =
+        study("[contact]\nlambda = 0.4\n[[material]]\nname = \"Own\"\nmodulus = 1e9\nlambda = 1.5");
     for row in &study.rows {
         let first = row.first.expect("a contact");
         let lambda = row.dissipation.lambda.expect("units");
         assert_eq!(lambda, if row.material.name == "Own" { 1.5 } else { 0.4 });
-        // lambda v (1 + e) = ln((1 + lambda v)/(1 - lambda e v)), e from above and below by its sign: gravity and zeta act in the
-        // contact as well.
+        // lambda v (1 + e) = ln((1 + lambda v)/(1 - lambda e v)), e from above and below by its
+        // sign: gravity and zeta act in the contact as well.
         let (x, e) = (lambda * first.speed, first.restitution);
         let missing = |e: f64| x * (1.0 + e) - (x.ln_1p() - (-x * e).ln_1p());
         assert!(
@@ -82,10 +102,16 @@ fn the_restitution_is_that_of_hunt_and_crossley() {
             row.material.name
         );
         // The greatest force comes on the way in, before the greatest depth.
-        let (speed, ratio) = (first.speed / study.units.speed(), row.dissipation.mu_over_gamma);
+        let (speed, ratio) = (
+            first.speed / study.units.speed(),
+            row.dissipation.mu_over_gamma,
+        );
         let contact = HuntCrossley::new(1.5, row.gamma, ratio, speed).expect("a contact");
         let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 2e-3;
-        assert!(near(first.peak_force, study.units.force() * contact.peak_force));
+        assert!(near(
+            first.peak_force,
+            study.units.force() * contact.peak_force
+        ));
         assert!(near(first.duration, study.units.time() * contact.duration));
         assert!(near(first.penetration, study.units.length * contact.depth));
         let swing = row.course.energies[0];
@@ -107,10 +133,17 @@ fn the_rest_time_is_that_of_runge_kutta() {
             duration: 150.0,
             ..Settings::default()
         };
-        let judge = simulate(&model, study.start, Integrator::RungeKutta, &settings).expect("a motion");
-        let (rest, judged) = (row.course.rest_time.expect("rest"), judge.rest().time.expect("rest"));
+        let judge =
+            simulate(&model, study.start, Integrator::RungeKutta, &settings).expect("a motion");
+        let (rest, judged) = (
+            row.course.rest_time.expect("rest"),
+            judge.rest().time.expect("rest"),
+        );
         assert!((rest / judged - 1.0).abs() < 1e-7, "{rest} and {judged}");
-        let before = judge.impacts.iter().filter(|impact| impact.entry_time < judged);
+        let before = judge
+            .impacts
+            .iter()
+            .filter(|impact| impact.entry_time < judged);
         assert_eq!(before.count(), row.course.impacts.len());
     }
 }
@@ -128,7 +161,8 @@ fn known_rest_times_are_found_again() {
             duration: 400.0,
             ..Settings::default()
         };
-        let found = course(&model, Start::default(), Integrator::Taylor, &settings).expect("a motion");
+        let found =
+            course(&model, Start::default(), Integrator::Taylor, &settings).expect("a motion");
         found.rest_time.expect("rest")
     };
     for (gamma, mu, expected) in [
@@ -146,13 +180,20 @@ fn known_rest_times_are_found_again() {
 
 #[test]
 fn two_families_of_what_is_held_fixed() {
-    let study =
-        study("[contact]\ndamping = 5e5\n[damping]\nviscous = 0.002\n[[material]]\nname = \"Cork\"\nmodulus = 2e7");
+    let study = study(
+        "[contact]\ndamping = 5e5\n[damping]\nviscous = 0.002\n[[material]]\nname = \"Cork\"\nmodulus = 2e7",
+    );
     let held = |form: &str| {
-        let found = study.held_fixed.iter().find(|held| held.damping.form().name() == form);
+        let found = study
+            .held_fixed
+            .iter()
+            .find(|held| held.damping.form().name() == form);
         found.expect("a form")
     };
-    assert_eq!(study.held_fixed[0].damping, ContactDamping::Coefficient(5e5));
+    assert_eq!(
+        study.held_fixed[0].damping,
+        ContactDamping::Coefficient(5e5)
+    );
     assert_eq!(study.held_fixed.len(), 5);
     for (one, other) in [
         ("mu", "damping"),
@@ -182,11 +223,14 @@ fn two_families_of_what_is_held_fixed() {
 
 #[test]
 fn numbers_in_si_units_come_out_again() {
-    let text =
-        "[contact]\ndamping = 5e5\n[damping]\nviscous = 0.002\ntorque = 1e-5\n[pendulum]\nmass = 0.03\nlength = 0.2";
+    let text = "[contact]\ndamping = 5e5\n[damping]\nviscous = 0.002\ntorque = 1e-5\n[pendulum]\nmass = 0.03\nlength = 0.2";
     let document = json::materials(&study(text));
-    let near = |found: Option<f64>, expected: f64| found.is_some_and(|found| (found / expected - 1.0).abs() < 1e-12);
-    for damping in std::iter::once(&document.dissipation).chain(document.materials.iter().map(|row| &row.dissipation)) {
+    let near = |found: Option<f64>, expected: f64| {
+        found.is_some_and(|found| (found / expected - 1.0).abs() < 1e-12)
+    };
+    for damping in std::iter::once(&document.dissipation)
+        .chain(document.materials.iter().map(|row| &row.dissipation))
+    {
         assert!(near(damping.contact.damping, 5e5), "{damping:?}");
         assert!(near(damping.viscous.viscous, 0.002) && near(damping.friction.torque, 1e-5));
         let lambda = damping.contact.lambda.expect("units");
@@ -198,19 +242,34 @@ fn numbers_in_si_units_come_out_again() {
     // The coefficient over the stiffness is lambda: F = k (1 + lambda d') d^(3/2).
     for row in &document.materials {
         let stiffness = 4.0 / 3.0 * row.modulus * 0.0096_f64.sqrt();
-        assert!(near(row.dissipation.contact.lambda, 5e5 / stiffness), "{}", row.name);
+        assert!(
+            near(row.dissipation.contact.lambda, 5e5 / stiffness),
+            "{}",
+            row.name
+        );
     }
 }
 
-/// Where the clock has no digits left for a contact, it is that of the closed form, and nothing is infinite.
+/// Where the clock has no digits left for a contact, it is that of the closed form, and nothing is
+/// infinite.
 #[test]
 fn a_barrier_beyond_all_hardness_is_a_barrier_still() {
     for modulus in ["1e20", "1e60", "1e300", "1e-3"] {
-        let study = study(&format!("[[material]]\nname = \"Strange\"\nmodulus = {modulus}"));
+        let study = study(&format!(
+            "[[material]]\nname = \"Strange\"\nmodulus = {modulus}"
+        ));
         let row = study.rows.last().expect("a row");
         let Some(first) = row.first else { continue };
-        let numbers = [first.duration, first.penetration, first.peak_force, first.peak_pressure];
-        assert!(numbers.iter().all(|number| *number > 0.0), "{modulus}: {first:?}");
+        let numbers = [
+            first.duration,
+            first.penetration,
+            first.peak_force,
+            first.peak_pressure,
+        ];
+        assert!(
+            numbers.iter().all(|number| *number > 0.0),
+            "{modulus}: {first:?}"
+        );
         let said = text::materials(&study, 120);
         assert!(!said.contains(" inf") && !said.contains("NaN"), "{said}");
     }
@@ -249,7 +308,11 @@ fn the_page_prints_what_is_found() {
             first.peak_pressure,
             first.restitution,
         ];
-        format!("| {} | {} |", row.material.name, numbers.map(decimal).join(" | "))
+        format!(
+            "| {} | {} |",
+            row.material.name,
+            numbers.map(decimal).join(" | ")
+        )
     };
     let held = study.held_fixed.iter().map(|held| {
         let [first, last] = held
@@ -257,7 +320,12 @@ fn the_page_prints_what_is_found() {
             .expect("rest")
             .map(|row| held.rest_times[row].expect("rest"));
         let form = held.damping.form();
-        let words = format!("{} = {} {}", form.name(), decimal(held.damping.value()), form.unit());
+        let words = format!(
+            "{} = {} {}",
+            form.name(),
+            decimal(held.damping.value()),
+            form.unit()
+        );
         let apart = lindstedt::export::significant(100.0 * (last / first - 1.0), 3);
         format!(
             "| {} | {} | {} | {apart} % |",
@@ -309,7 +377,10 @@ fn a_table_has_a_row_for_each_material() {
     let columns = |line: &str| line.split(',').count();
     assert_eq!(columns(lines[0]), columns(lines[1]));
     // Its name has a comma; it does not rest in so short a run.
-    assert!(lines[2].starts_with("\"Cork, \"\"fine\"\"\",20000000,"), "{table}");
+    assert!(
+        lines[2].starts_with("\"Cork, \"\"fine\"\"\",20000000,"),
+        "{table}"
+    );
     assert_eq!(columns(lines[2]), columns(lines[1]) + 1);
     assert!(lines[2].contains(",,,"), "{table}");
 }
@@ -319,9 +390,18 @@ fn a_table_has_a_row_for_each_material() {
 fn a_picture_shows_what_is_held_fixed() {
     let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/materials");
     for (name, words) in [
-        ("table-2", ["Swing, lambda held fixed", "Decay, mu held fixed"]),
-        ("own-mu", ["Swing, mu held fixed", "Decay, mu_over_gamma held fixed"]),
-        ("never-rests", ["Decay, mu_over_gamma held fixed", "no barrier"]),
+        (
+            "table-2",
+            ["Swing, lambda held fixed", "Decay, mu held fixed"],
+        ),
+        (
+            "own-mu",
+            ["Swing, mu held fixed", "Decay, mu_over_gamma held fixed"],
+        ),
+        (
+            "never-rests",
+            ["Decay, mu_over_gamma held fixed", "no barrier"],
+        ),
     ] {
         let file = format!("{examples}/{name}.toml");
         let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,5 @@
-//! Pages: whole, of formulas that are set, with the numbers of the text and the picture of `--plot`, and nothing from elsewhere.
+//! Pages: whole, of formulas that are set, with the numbers of the text and the picture of
+//! `--plot`, and nothing from elsewhere.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -74,26 +75,57 @@ fn every_command_has_a_page() {
         (&["derive", "pendulum", "--at", "A=3/2"], true),
         (&["derive", "x'' + k*x + eps*x^3 = 0"], false),
         (
-            &["derive", "van-der-pol", "--order", "3", "--at", "mu=1/2", "--steps"],
+            &[
+                "derive",
+                "van-der-pol",
+                "--order",
+                "3",
+                "--at",
+                "mu=1/2",
+                "--steps",
+            ],
             true,
         ),
         (&["derive", "examples/forced-duffing.toml"], true),
-        (&["compare", "duffing", "--at", "A=1", "--at", "eps=1"], true),
+        (
+            &["compare", "duffing", "--at", "A=1", "--at", "eps=1"],
+            true,
+        ),
         (&["impact"], true),
         (&["impact", "examples/impact-units.toml"], true),
         (&["impact", "examples/impact-contact-laws.toml"], true),
         (&["impact", "--compare"], false),
         (&["simulate", "examples/simulate/paper.toml"], true),
         (
-            &["simulate", "examples/simulate/paper.toml", "--sweep", "zeta=0.01,0.02"],
+            &[
+                "simulate",
+                "examples/simulate/paper.toml",
+                "--sweep",
+                "zeta=0.01,0.02",
+            ],
             true,
         ),
         (
-            &["simulate", "x'' + sin(x) = 0", "--from", "x=1,v=0", "--until", "5"],
+            &[
+                "simulate",
+                "x'' + sin(x) = 0",
+                "--from",
+                "x=1,v=0",
+                "--until",
+                "5",
+            ],
             true,
         ),
         (&["response", "examples/response/duffing.toml"], true),
-        (&["stability", "examples/stability/mathieu.toml", "--at", "eps=1"], true),
+        (
+            &[
+                "stability",
+                "examples/stability/mathieu.toml",
+                "--at",
+                "eps=1",
+            ],
+            true,
+        ),
         (&["friction"], true),
         (&["materials"], true),
         (&["lagrange"], false),
@@ -113,7 +145,9 @@ fn every_command_has_a_page() {
 fn the_formulas_of_every_example_are_set() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     let files = |folder: PathBuf| -> Vec<String> {
-        let entries = std::fs::read_dir(folder).expect("a folder").filter_map(Result::ok);
+        let entries = std::fs::read_dir(folder)
+            .expect("a folder")
+            .filter_map(Result::ok);
         let paths = entries.map(|entry| entry.path().to_str().expect("a path in text").to_owned());
         let mut files: Vec<String> = paths.filter(|path| path.ends_with(".toml")).collect();
         files.sort();
@@ -187,7 +221,10 @@ fn a_page_says_how_it_was_made_and_reads_nothing_as_html() {
     );
     let page = self::page(&["derive", "x'' + x + eps*x^3 = 0", "--order", "1"]);
     let command = "lindstedt derive &quot;x'' + x + eps*x^3 = 0&quot; --order 1";
-    assert!(page.contains(&format!("<title>{command}</title>")), "{page}");
+    assert!(
+        page.contains(&format!("<title>{command}</title>")),
+        "{page}"
+    );
     assert!(
         page.contains(&format!("<code>{command} --format html</code>")),
         "{page}"
@@ -241,11 +278,21 @@ fn the_name_of_the_output_decides_where_no_format_is_given() {
         assert_eq!(written(name, &[]), asked, "{name}");
     }
     check(&written("LAW.HTML", &[]));
-    assert_eq!(written("text.json", &["--format", "text"]), result(&question));
+    assert_eq!(
+        written("text.json", &["--format", "text"]),
+        result(&question)
+    );
     let place = folder.join("impact.c");
-    let refused = run(&["impact", "--output", place.to_str().expect("a path in text")]);
+    let refused = run(&[
+        "impact",
+        "--output",
+        place.to_str().expect("a path in text"),
+    ]);
     let message = String::from_utf8_lossy(&refused.stderr).into_owned();
     assert_eq!(refused.status.code(), Some(2));
-    assert!(message.contains("--format text writes text there"), "{message}");
+    assert!(
+        message.contains("--format text writes text there"),
+        "{message}"
+    );
     std::fs::remove_dir_all(&folder).expect("the folder is removed");
 }

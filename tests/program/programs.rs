@@ -51,8 +51,8 @@ fn arguments<'a>(text: &'a str, routine: &str) -> Option<Vec<&'a str>> {
 }
 
 impl Case {
-    /// The calls whose values a program prints, in this order: the frequency; for each time displacement, velocity, and the
-    /// displacements a step before and after.
+    /// The calls whose values a program prints, in this order: the frequency; for each time
+    /// displacement, velocity, and the displacements a step before and after.
     fn calls(&self) -> Vec<(&'static str, Vec<f64>)> {
         let list = |routine: &str, t: f64| -> Option<Vec<f64>> {
             let value = |name: &str| match name {
@@ -65,7 +65,12 @@ impl Case {
                     *own.unwrap_or_else(|| panic!("{}: {name}", self.name))
                 }
             };
-            Some(arguments(&self.texts[0], routine)?.into_iter().map(value).collect())
+            Some(
+                arguments(&self.texts[0], routine)?
+                    .into_iter()
+                    .map(value)
+                    .collect(),
+            )
         };
         let mut calls = vec![(ROUTINES[0], list(ROUTINES[0], 0.0).expect("a frequency"))];
         if self.motion.is_some() {
@@ -85,13 +90,19 @@ impl Case {
     fn check(&self, language: Language, found: &[f64]) {
         let name = format!("{} in {}", self.name, language.name());
         let near = |found: f64, value: f64, size: f64, what: &str| {
-            assert!((found - value).abs() <= size, "{name}: {what} {found} and {value}");
+            assert!(
+                (found - value).abs() <= size,
+                "{name}: {what} {found} and {value}"
+            );
         };
-        // At a small amplitude terms may cancel: then there is a value to half of the digits, or none.
+        // At a small amplitude terms may cancel: then there is a value to half of the digits, or
+        // none.
         let cancels = self.texts[0].contains("rounding takes the digits")
-            && ["A", "a"]
-                .iter()
-                .any(|name| self.values.get(*name).is_some_and(|value| value.abs() < 0.1));
+            && ["A", "a"].iter().any(|name| {
+                self.values
+                    .get(*name)
+                    .is_some_and(|value| value.abs() < 0.1)
+            });
         let tolerance = if cancels { 1e-6 } else { 1e-12 };
         if !(cancels && found[0].is_nan()) {
             near(found[0], self.omega, tolerance * self.omega, "omega");
@@ -102,7 +113,12 @@ impl Case {
             if cancels && found.iter().all(|value| value.is_nan()) {
                 continue;
             }
-            near(found[0], motion(t), tolerance * size * (1.0 + self.omega * t), "x");
+            near(
+                found[0],
+                motion(t),
+                tolerance * size * (1.0 + self.omega * t),
+                "x",
+            );
             let difference = (found[3] - found[2]) / (2.0 * STEP);
             near(
                 found[1],
@@ -139,7 +155,9 @@ fn examples() -> Vec<Case> {
         let mut at: Vec<String> = vec![];
         if solution["verification"].is_null() {
             let parameters = solution["parameters"].as_array().expect("a list").iter();
-            let names: Vec<&str> = parameters.map(|name| name.as_str().expect("a name")).collect();
+            let names: Vec<&str> = parameters
+                .map(|name| name.as_str().expect("a name"))
+                .collect();
             at.extend(
                 names
                     .iter()
@@ -151,12 +169,18 @@ fn examples() -> Vec<Case> {
             }
             // Without any symbol there is nothing to give values to.
             let at: Vec<&str> = at.iter().flat_map(|value| ["--at", value]).collect();
-            let at = if at.is_empty() { vec!["--tolerance", "1"] } else { at };
+            let at = if at.is_empty() {
+                vec!["--tolerance", "1"]
+            } else {
+                at
+            };
             solution = document(&at);
         }
         let at: Vec<&str> = at.iter().flat_map(|value| ["--at", value]).collect();
         let verification = &solution["verification"];
-        if !solution["response"].is_null() || !verification["followed"].is_null() && solution["limit_cycle"].is_null() {
+        if !solution["response"].is_null()
+            || !verification["followed"].is_null() && solution["limit_cycle"].is_null()
+        {
             let refused = run(&[&["derive", &file, "--format", "c"], &at[..]].concat());
             let said = String::from_utf8_lossy(&refused.stderr).into_owned();
             assert!(
@@ -165,9 +189,11 @@ fn examples() -> Vec<Case> {
             );
             continue;
         }
-        let texts =
-            LANGUAGES.map(|language| output(&[&["derive", &file, "--format", language.name()], &at[..]].concat()));
-        // The formula is that of the cycle, the verdict on the way to it: `methods` has it without a start.
+        let texts = LANGUAGES.map(|language| {
+            output(&[&["derive", &file, "--format", language.name()], &at[..]].concat())
+        });
+        // The formula is that of the cycle, the verdict on the way to it: `methods` has it without
+        // a start.
         if !verification["followed"].is_null() {
             continue;
         }
@@ -182,7 +208,9 @@ fn examples() -> Vec<Case> {
         cases.push(Case {
             name: file,
             texts,
-            values: values.map(|(name, value)| (name.clone(), number(value))).collect(),
+            values: values
+                .map(|(name, value)| (name.clone(), number(value)))
+                .collect(),
             omega,
             motion: Some(Box::new(move |t| {
                 let theta = omega * t + phase;
@@ -196,7 +224,8 @@ fn examples() -> Vec<Case> {
     cases
 }
 
-/// Equations and values at which every method that has an answer is run, and how many must have one.
+/// Equations and values at which every method that has an answer is run, and how many must have
+/// one.
 const EQUATIONS: [(&str, &str, usize); 16] = [
     ("x'' + x + eps*x^3 = 0", "A = 3/2, eps = 1/2", 14),
     ("x'' + k*x + eps*x^3 = 0", "A = 3/2, eps = -1/20, k = 2", 14),
@@ -235,8 +264,8 @@ fn methods() -> Vec<Case> {
             let Ok(solution) = solve(&oscillator, &options) else {
                 continue;
             };
-            let of_harmonic =
-                solution.amplitude == AmplitudeConvention::FirstHarmonic && solution.limit_cycle.is_none();
+            let of_harmonic = solution.amplitude == AmplitudeConvention::FirstHarmonic
+                && solution.limit_cycle.is_none();
             let at = if of_harmonic {
                 at.replace("A =", "a =")
             } else {
@@ -251,18 +280,26 @@ fn methods() -> Vec<Case> {
                 .collect();
             let own = evaluate(&oscillator, &solution, &numbers).expect(&name);
             let omega = own.frequency_squared.sqrt();
-            let text =
-                |language| code::solution(&oscillator, &solution, Some(&verification), 0.01, language).expect(&name);
-            let mut values: BTreeMap<String, f64> =
-                numbers.iter().map(|(name, value)| (name.to_string(), *value)).collect();
-            values.extend(own.chosen.iter().map(|(name, value)| (name.to_string(), *value)));
+            let text = |language| {
+                code::solution(&oscillator, &solution, Some(&verification), 0.01, language)
+                    .expect(&name)
+            };
+            let mut values: BTreeMap<String, f64> = numbers
+                .iter()
+                .map(|(name, value)| (name.to_string(), *value))
+                .collect();
+            values.extend(
+                own.chosen
+                    .iter()
+                    .map(|(name, value)| (name.to_string(), *value)),
+            );
             cases.push(Case {
                 texts: LANGUAGES.map(text),
                 values,
                 omega,
-                motion: own
-                    .motion
-                    .map(|motion| Box::new(move |t| motion.evaluate(omega * t)) as Box<dyn Fn(f64) -> f64>),
+                motion: own.motion.map(|motion| {
+                    Box::new(move |t| motion.evaluate(omega * t)) as Box<dyn Fn(f64) -> f64>
+                }),
                 name,
             });
         }
@@ -278,9 +315,15 @@ fn methods() -> Vec<Case> {
 /// The numbers that a command prints, a line each.
 fn numbers(command: &mut Command) -> Vec<f64> {
     let output = command.output().expect("it starts");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     let text = String::from_utf8(output.stdout).expect("text");
-    text.lines().map(|line| line.parse().expect("a number")).collect()
+    text.lines()
+        .map(|line| line.parse().expect("a number"))
+        .collect()
 }
 
 /// Whether a program of this name is here.
@@ -301,7 +344,8 @@ fn run_all(language: Language, cases: &[Case], folder: &Path) -> Option<Vec<f64>
         .expect("a language");
     let ending = ["py", "c", "rs"][index];
     for (k, case) in cases.iter().enumerate() {
-        std::fs::write(folder.join(format!("case{k}.{ending}")), &case.texts[index]).expect("a file");
+        std::fs::write(folder.join(format!("case{k}.{ending}")), &case.texts[index])
+            .expect("a file");
     }
     let calls = |k: usize, prefix: &str, print: &dyn Fn(String) -> String| -> String {
         let calls = cases[k].calls().into_iter();
@@ -333,7 +377,9 @@ def show(name, *values):\n    try:\n        print(repr(float(case[name](*values)
             }
             let file = folder.join("driver.py");
             std::fs::write(&file, driver).expect("a file");
-            Some(numbers(Command::new("python3").args(["-I", "-S"]).arg(file)))
+            Some(numbers(
+                Command::new("python3").args(["-I", "-S"]).arg(file),
+            ))
         }
         Language::C => {
             if !is_here("cc") {
@@ -361,8 +407,13 @@ def show(name, *values):\n    try:\n        print(repr(float(case[name](*values)
                 for name in NAMES {
                     let _ = writeln!(driver, "#undef {name}\n#define {name} {name}_{k}");
                 }
-                let _ = writeln!(driver, "#include \"case{k}.c\"\nstatic void show_{k}(void)\n{{");
-                driver += &calls(k, "", &|call| format!("    printf(\"%.17g\\n\", {call});\n"));
+                let _ = writeln!(
+                    driver,
+                    "#include \"case{k}.c\"\nstatic void show_{k}(void)\n{{"
+                );
+                driver += &calls(k, "", &|call| {
+                    format!("    printf(\"%.17g\\n\", {call});\n")
+                });
                 driver += "}\n";
             }
             driver += "int main(void)\n{\n";
@@ -453,8 +504,9 @@ fn programs_give_the_numbers_of_the_library() {
     std::fs::remove_dir_all(folder).expect("the folder goes");
 }
 
-/// The harmonics of a pendulum fall like the powers of its nome, by some seventy from one odd one to the next at A = 1: the even ones are
-/// none, and those beyond the 15th are less than what rounding leaves.
+/// The harmonics of a pendulum fall like the powers of its nome, by some seventy from one odd one
+/// to the next at A = 1: the even ones are none, and those beyond the 15th are less than what
+/// rounding leaves.
 #[test]
 fn rounding_noise_is_no_harmonic_of_a_program() {
     for language in ["python", "c", "rust"] {
@@ -474,7 +526,10 @@ fn rounding_noise_is_no_harmonic_of_a_program() {
                 || text.contains(&format!("({k}.0*theta)"))
         };
         assert!(["3", "5", "7"].iter().all(|k| has(k)), "{text}");
-        assert!(!["2", "4", "6", "17", "21", "63"].iter().any(|k| has(k)), "{text}");
+        assert!(
+            !["2", "4", "6", "17", "21", "63"].iter().any(|k| has(k)),
+            "{text}"
+        );
     }
 }
 
@@ -497,7 +552,12 @@ fn what_is_no_formula_is_refused_with_a_way_forward() {
             "JSON",
         ),
         (
-            ["derive", "x'' + x + eps*x^3 = F*cos(Omega*t)", "--method", "averaging"],
+            [
+                "derive",
+                "x'' + x + eps*x^3 = F*cos(Omega*t)",
+                "--method",
+                "averaging",
+            ],
             "a drive holds the motion",
             "JSON",
         ),
@@ -529,7 +589,8 @@ fn what_is_no_formula_is_refused_with_a_way_forward() {
     }
 }
 
-/// How a program looks in every language: a law with a parameter, and one of special functions with a verdict.
+/// How a program looks in every language: a law with a parameter, and one of special functions with
+/// a verdict.
 #[test]
 fn programs_look_as_they_looked() {
     let mut settings = insta::Settings::clone_current();
@@ -551,9 +612,16 @@ fn programs_look_as_they_looked() {
             ];
             insta::assert_snapshot!(format!("program-iterate-{name}"), output(&iterate));
         }
-        let balance = ["derive", "examples/harmonic-balance-duffing.toml", "--format", "python"];
+        let balance = [
+            "derive",
+            "examples/harmonic-balance-duffing.toml",
+            "--format",
+            "python",
+        ];
         insta::assert_snapshot!("program-balance-python", output(&balance));
-        let exact = ["derive", "pendulum", "--method", "exact", "--format", "python"];
+        let exact = [
+            "derive", "pendulum", "--method", "exact", "--format", "python",
+        ];
         insta::assert_snapshot!("program-exact-python", output(&exact));
     });
 }
@@ -562,15 +630,18 @@ fn programs_look_as_they_looked() {
 #[test]
 fn a_derivation_stands_in_every_format() {
     let first = "fixes               W1 = 3*eps*A^2/4";
-    let json: Value =
-        serde_json::from_str(&output(&["derive", "duffing", "--steps", "--format", "json"])).expect("JSON");
+    let json: Value = serde_json::from_str(&output(&[
+        "derive", "duffing", "--steps", "--format", "json",
+    ]))
+    .expect("JSON");
     let lines = json["derivation"].as_array().expect("lines");
     assert!(
         lines
             .iter()
             .any(|line| line.as_str().is_some_and(|line| line.trim() == first))
     );
-    let plain: Value = serde_json::from_str(&output(&["derive", "duffing", "--format", "json"])).expect("JSON");
+    let plain: Value =
+        serde_json::from_str(&output(&["derive", "duffing", "--format", "json"])).expect("JSON");
     assert!(plain.get("derivation").is_none());
     for (language, prefix) in [
         ("rust", "// "),

@@ -1,5 +1,5 @@
-//! `lindstedt simulate` as a user meets it: one file in `examples/simulate/`, one snapshot in text and one in JSON; one
-//! file in `tests/errors/simulate/`, one message.
+//! `lindstedt simulate` as a user meets it: one file in `examples/simulate/`, one snapshot in text
+//! and one in JSON; one file in `tests/errors/simulate/`, one message.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -33,12 +33,16 @@ fn output(arguments: &[&str]) -> String {
 }
 
 fn json(arguments: &[&str]) -> Value {
-    serde_json::from_str(&output(&[arguments, &["--format", "json"]].concat())).expect("the output is JSON")
+    serde_json::from_str(&output(&[arguments, &["--format", "json"]].concat()))
+        .expect("the output is JSON")
 }
 
 /// The lines of a table of comma-separated values that are no comments.
 fn rows(table: &str) -> Vec<&str> {
-    table.lines().filter(|line| !line.starts_with('#')).collect()
+    table
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .collect()
 }
 
 fn example(name: &str) -> String {
@@ -65,7 +69,9 @@ fn rounded(value: &mut Value) {
             let number = number.as_f64().unwrap_or_default();
             *value = match number {
                 _ if number.abs() < 1e-9 => "noise".into(),
-                _ => format!("{number:.6e}").parse::<f64>().map_or(Value::Null, Value::from),
+                _ => format!("{number:.6e}")
+                    .parse::<f64>()
+                    .map_or(Value::Null, Value::from),
             };
         }
         Value::Array(list) => list.iter_mut().for_each(rounded),
@@ -82,7 +88,10 @@ fn every_example_prints_what_it_printed() {
             "*.toml",
             |file| {
                 let path = file.to_str().expect("a path in text");
-                insta::assert_snapshot!("simulate-text", output(&[path, "--sample", "12.5", "--sample", "40"]));
+                insta::assert_snapshot!(
+                    "simulate-text",
+                    output(&[path, "--sample", "12.5", "--sample", "40"])
+                );
                 let mut document = json(&[path, "--sample", "12.5"]);
                 rounded(&mut document);
                 insta::assert_json_snapshot!("simulate-json", document);
@@ -91,12 +100,16 @@ fn every_example_prints_what_it_printed() {
     });
 }
 
-/// The chain of closed forms in every format, and what it says of itself: within a percent, or exit code 3.
+/// The chain of closed forms in every format, and what it says of itself: within a percent, or exit
+/// code 3.
 #[test]
 fn a_chain_prints_what_it_printed_and_is_judged() {
     let file = format!("{EXAMPLES}/damper.toml");
     settings().bind(|| {
-        insta::assert_snapshot!("simulate-chain-text@damper.toml", output(&[&file, "--chain"]));
+        insta::assert_snapshot!(
+            "simulate-chain-text@damper.toml",
+            output(&[&file, "--chain"])
+        );
         insta::assert_snapshot!(
             "simulate-chain-latex@damper.toml",
             output(&[&file, "--chain", "--format", "latex"])
@@ -118,7 +131,8 @@ fn a_chain_prints_what_it_printed_and_is_judged() {
         .expect("a phase at that time");
     let number = |key: &str| phase["swing"][key].as_f64().expect("a number");
     let t = 3.25 - phase["start"].as_f64().expect("a beginning");
-    let (sn, ..) = spec_math::cephes64::ellpj(number("speed") * t + number("phase"), number("parameter"));
+    let (sn, ..) =
+        spec_math::cephes64::ellpj(number("speed") * t + number("phase"), number("parameter"));
     let x = 2.0 * number("sign") * (number("modulus") * (-number("rate") * t).exp() * sn).asin();
     assert!((sampled["samples"][0]["x"].as_f64().expect("x") - x).abs() < 1e-12);
 }
@@ -142,7 +156,10 @@ fn a_sweep_has_the_baseline_of_every_row() {
             ("rest_lossless", "lossless_barrier"),
         ] {
             let (found, wanted) = (row[of_row].as_f64(), single["baseline"][of_run].as_f64());
-            assert!(found.is_some() && found == wanted, "{of_row}: {found:?} {wanted:?}");
+            assert!(
+                found.is_some() && found == wanted,
+                "{of_row}: {found:?} {wanted:?}"
+            );
         }
         let table = output(&[swept.as_slice(), &["--format", "csv"]].concat());
         assert!(
@@ -159,7 +176,11 @@ fn every_example_agrees_with_the_judge() {
         .filter_map(Result::ok)
     {
         let path = file.path();
-        let document = json(&[path.to_str().expect("a path in text"), "--integrator", "both"]);
+        let document = json(&[
+            path.to_str().expect("a path in text"),
+            "--integrator",
+            "both",
+        ]);
         let judge = &document["judge"];
         let difference = judge["max_difference"]["x"].as_f64().expect("a number");
         assert!(difference < 1e-6, "{}: {difference}", path.display());
@@ -193,12 +214,21 @@ fn every_wrong_input_gets_its_message() {
 fn refusal(arguments: &[&str]) -> String {
     let output = run(arguments);
     let text = String::from_utf8(output.stderr).expect("messages are text");
-    assert!(matches!(output.status.code(), Some(1 | 2)), "{arguments:?}: {text}");
-    assert!(output.stdout.is_empty() && text.starts_with("error: "), "{text}");
+    assert!(
+        matches!(output.status.code(), Some(1 | 2)),
+        "{arguments:?}: {text}"
+    );
+    assert!(
+        output.stdout.is_empty() && text.starts_with("error: "),
+        "{text}"
+    );
     for word in ["panicked", "internal error", "stopped after"] {
         assert!(!text.contains(word), "{text}");
     }
-    format!("{text}exit code {}\n", output.status.code().unwrap_or_default())
+    format!(
+        "{text}exit code {}\n",
+        output.status.code().unwrap_or_default()
+    )
 }
 
 #[test]
@@ -210,15 +240,31 @@ fn wrong_arguments_get_theirs() {
         (vec!["--sweep", "zeta=0:1:1"], "whole number from 2"),
         (vec!["--sweep", "zeta=nan:1:3"], "no finite number"),
         (vec!["--sweep", "zeta=-1:1:3"], "zeta must not be negative"),
-        (vec!["--sweep", "barrier=-2:0.3:3"], "inside the right barrier"),
-        (vec!["--sweep", "duration=1:2:3"], "the same for all motions"),
-        (vec!["--sweep", "zeta=0:1:3", "--sweep", "zeta=0:1:3"], "swept twice"),
+        (
+            vec!["--sweep", "barrier=-2:0.3:3"],
+            "inside the right barrier",
+        ),
+        (
+            vec!["--sweep", "duration=1:2:3"],
+            "the same for all motions",
+        ),
+        (
+            vec!["--sweep", "zeta=0:1:3", "--sweep", "zeta=0:1:3"],
+            "swept twice",
+        ),
         (
             vec!["--sweep", "zeta=0:1:2000", "--sweep", "mu=0:1:2000"],
             "2000 * 2000 = 4000000 motions, more than 1000000 motions",
         ),
         (
-            vec!["--sweep", "zeta=0:1:3", "--sweep", "mu=0:1:3", "--sweep", "zeta=5:6:3"],
+            vec![
+                "--sweep",
+                "zeta=0:1:3",
+                "--sweep",
+                "mu=0:1:3",
+                "--sweep",
+                "zeta=5:6:3",
+            ],
             "`zeta` is swept twice",
         ),
         (
@@ -242,11 +288,20 @@ fn wrong_arguments_get_theirs() {
             vec!["--sweep", "speed=-1:1:3:log"],
             "two ends of one sign, neither of them zero",
         ),
-        (vec!["--sweep", "zeta=0.01:0.1:3:logg"], "did you mean `log`?"),
+        (
+            vec!["--sweep", "zeta=0.01:0.1:3:logg"],
+            "did you mean `log`?",
+        ),
         (vec!["--sweep", "zeta=0.01,x"], "`x` is no finite number"),
         (vec!["--sweep", "zeta=0.01"], "NAME=a,b,c"),
-        (vec!["--sweep", "zeta=0.1,0.2,0.1"], "`zeta` takes the value 0.1 twice"),
-        (vec!["--sweep", "zeta=0.1:0.1:3"], "`zeta` takes the value 0.1 twice"),
+        (
+            vec!["--sweep", "zeta=0.1,0.2,0.1"],
+            "`zeta` takes the value 0.1 twice",
+        ),
+        (
+            vec!["--sweep", "zeta=0.1:0.1:3"],
+            "`zeta` takes the value 0.1 twice",
+        ),
         (vec!["--sweep", "zeta=0:1:3", "--sample", "1"], "leave out"),
         (vec!["--sample", "1e9"], "lies beyond the duration"),
         (vec!["--sample", "-1"], "sample"),
@@ -264,7 +319,10 @@ fn wrong_arguments_get_theirs() {
 
 #[test]
 fn a_barrier_out_of_reach_leaves_the_plain_pendulum_and_says_so() {
-    let path = std::env::temp_dir().join(format!("lindstedt-out-of-reach-{}.toml", std::process::id()));
+    let path = std::env::temp_dir().join(format!(
+        "lindstedt-out-of-reach-{}.toml",
+        std::process::id()
+    ));
     std::fs::write(&path, "[pendulum]\nbarrier = 2.0\n").expect("a file");
     let file = path.to_str().expect("a path in text");
     assert!(output(&[file]).contains("no contact: the motion never reaches the barrier at 2"));
@@ -279,7 +337,11 @@ fn a_barrier_out_of_reach_leaves_the_plain_pendulum_and_says_so() {
     let quarter = ellip::ellipk(0.75_f64.sin().powi(2)).expect("m < 1");
     let sample = format!("{}", 3.0 * quarter);
     let document = json(&[file, "--sample", &sample]);
-    assert!(document["samples"][0]["x"].as_f64().is_some_and(|x| x.abs() < 1e-9));
+    assert!(
+        document["samples"][0]["x"]
+            .as_f64()
+            .is_some_and(|x| x.abs() < 1e-9)
+    );
     std::fs::remove_file(path).expect("the file goes");
 }
 
@@ -300,7 +362,9 @@ fn a_run_that_cannot_go_on_says_where_and_keeps_what_it_has() {
     );
     assert_eq!(run(&[file, "--tolerance", "0.1"]).status.code(), Some(4));
     let table = run(&[file, "--format", "csv"]);
-    assert!(String::from_utf8_lossy(&table.stdout).contains("# incomplete: no finite value after t = "));
+    assert!(
+        String::from_utf8_lossy(&table.stdout).contains("# incomplete: no finite value after t = ")
+    );
     std::fs::remove_file(path).expect("the file goes");
 }
 
@@ -326,17 +390,22 @@ fn steps_and_seconds_are_limits_that_are_said() {
             .all(|row| row.ends_with(",false,step limit"))
     );
     let note = String::from_utf8_lossy(&swept.stderr);
-    assert!(note.contains("warning: 3 of 3 motions stopped early"), "{note}");
+    assert!(
+        note.contains("warning: 3 of 3 motions stopped early"),
+        "{note}"
+    );
 
     std::fs::write(&path, "[run]\nduration = 1e9\nstep_limit = 10000000\n").expect("a file");
     // A busy machine is given more time, until the barrier has been touched.
-    let touched = ["0.2", "2", "20", "200", "2000"].into_iter().find_map(|seconds| {
-        let output = run_for(seconds, &[file, "--format", "json"]);
-        assert_eq!(output.status.code(), Some(4));
-        let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-        let impacts = document["impacts"].as_array().map_or(0, Vec::len);
-        (impacts > 0).then_some(document)
-    });
+    let touched = ["0.2", "2", "20", "200", "2000"]
+        .into_iter()
+        .find_map(|seconds| {
+            let output = run_for(seconds, &[file, "--format", "json"]);
+            assert_eq!(output.status.code(), Some(4));
+            let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+            let impacts = document["impacts"].as_array().map_or(0, Vec::len);
+            (impacts > 0).then_some(document)
+        });
     let document = touched.expect("an impact");
     assert_eq!(document["complete"], false);
     let stopped = document["stopped"].as_str().expect("a reason");
@@ -348,7 +417,13 @@ fn steps_and_seconds_are_limits_that_are_said() {
 fn results_go_to_whole_files_or_nowhere() {
     let folder = std::env::temp_dir().join(format!("lindstedt-files-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
-    let place = |name: &str| folder.join(name).to_str().expect("a path in text").to_owned();
+    let place = |name: &str| {
+        folder
+            .join(name)
+            .to_str()
+            .expect("a path in text")
+            .to_owned()
+    };
     let code = |arguments: &[&str]| run(arguments).status.code();
     let (result, picture) = (place("result.txt"), place("picture.svg"));
     assert_eq!(code(&["--output", &result, "--plot", &picture]), Some(0));
@@ -373,7 +448,10 @@ fn results_go_to_whole_files_or_nowhere() {
     assert_eq!(code(&["--plot", &place("picture.png")]), Some(2));
     assert_eq!(code(&["--plot", "-"]), Some(2));
     assert_eq!(code(&["--output", &place("nowhere/result.txt")]), Some(1));
-    assert_eq!(code(&["--output", folder.to_str().expect("a path in text")]), Some(1));
+    assert_eq!(
+        code(&["--output", folder.to_str().expect("a path in text")]),
+        Some(1)
+    );
     let drawn = run(&["--plot", "-", "--output", &result]);
     assert!(drawn.stdout.starts_with(b"<svg"));
     std::fs::remove_dir_all(folder).expect("the folder goes");
@@ -381,7 +459,8 @@ fn results_go_to_whole_files_or_nowhere() {
 
 #[test]
 fn extreme_numbers_end_in_time() {
-    // Excitation beyond all scales, a creeping motion that underflows, friction and damping without measure.
+    // Excitation beyond all scales, a creeping motion that underflows, friction and damping without
+    // measure.
     for (number, (text, code, words)) in [
         (
             "[excitation]\nbeta = -0.2\nfrequency_ratio = 1.7e308",
@@ -415,7 +494,10 @@ fn extreme_numbers_end_in_time() {
     .into_iter()
     .enumerate()
     {
-        let path = std::env::temp_dir().join(format!("lindstedt-extreme-{}-{number}.toml", std::process::id()));
+        let path = std::env::temp_dir().join(format!(
+            "lindstedt-extreme-{}-{number}.toml",
+            std::process::id()
+        ));
         std::fs::write(&path, text).expect("a file");
         let output = run(&[path.to_str().expect("a path in text"), "--quiet"]);
         let printed = String::from_utf8_lossy(&output.stdout).into_owned();
@@ -442,7 +524,12 @@ fn the_table_of_the_trajectory() {
         assert!(number(1) > 0.323 - 1e-12 || fields[3] == "free", "{line}");
     }
     assert!(last == 200.0 && contacts > 100);
-    assert_eq!(output(&[&file, "--format", "csv", "--sample", "3"]).lines().count(), 2);
+    assert_eq!(
+        output(&[&file, "--format", "csv", "--sample", "3"])
+            .lines()
+            .count(),
+        2
+    );
 }
 
 #[test]
@@ -457,19 +544,27 @@ fn a_row_of_the_trajectory_is_a_state_and_its_energy() {
             .lines()
             .skip(1)
             .map(|line| {
-                let fields = line.split(',').enumerate().filter(|(column, _)| *column != 3);
-                fields.map(|(_, field)| field.parse().expect("a number")).collect()
+                let fields = line
+                    .split(',')
+                    .enumerate()
+                    .filter(|(column, _)| *column != 3);
+                fields
+                    .map(|(_, field)| field.parse().expect("a number"))
+                    .collect()
             })
             .collect();
         for pair in rows.windows(2) {
             let ([t, x, v, _], [next_t, next_x, next_v, _]) = (&pair[0][..], &pair[1][..]) else {
                 panic!("{pair:?}");
             };
-            // The velocity is the slope of the displacement, to the third power of the step and the last digit of both.
+            // The velocity is the slope of the displacement, to the third power of the step and the
+            // last digit of both.
             let step = next_t - t;
             let missed = next_x - x - 0.5 * step * (v + next_v);
             assert!(
-                missed.abs() < step * (0.5 * (next_v - v).abs() + 0.3 * step * step) + 2.0 * f64::EPSILON * x.abs(),
+                missed.abs()
+                    < step * (0.5 * (next_v - v).abs() + 0.3 * step * step)
+                        + 2.0 * f64::EPSILON * x.abs(),
                 "{pair:?}"
             );
         }
@@ -492,7 +587,8 @@ fn a_row_of_the_trajectory_is_a_state_and_its_energy() {
 /// What a sweep says of a motion is what its own document says, in every format.
 #[test]
 fn a_row_of_a_sweep_sums_up_its_motion() {
-    let path = std::env::temp_dir().join(format!("lindstedt-sweep-row-{}.toml", std::process::id()));
+    let path =
+        std::env::temp_dir().join(format!("lindstedt-sweep-row-{}.toml", std::process::id()));
     let file = path.to_str().expect("a path in text");
     let with = |barrier: f64| {
         format!(
@@ -511,8 +607,16 @@ fn a_row_of_a_sweep_sums_up_its_motion() {
         let single = json(&[file]);
         let impacts = single["impacts"].as_array().expect("a list");
         let float = |value: &Value| value.as_f64().expect("a number");
-        let largest = |key: &str| impacts.iter().map(|impact| float(&impact[key])).fold(0.0, f64::max);
-        let lost: f64 = impacts.iter().map(|impact| float(&impact["energy_lost"])).sum();
+        let largest = |key: &str| {
+            impacts
+                .iter()
+                .map(|impact| float(&impact[key]))
+                .fold(0.0, f64::max)
+        };
+        let lost: f64 = impacts
+            .iter()
+            .map(|impact| float(&impact["energy_lost"]))
+            .sum();
         assert!(impacts.len() > 3 && lost > 0.1, "{} {lost}", impacts.len());
         let expected = [
             ("barrier", barrier),
@@ -527,7 +631,12 @@ fn a_row_of_a_sweep_sums_up_its_motion() {
         ];
         let entry = &document["rows"][row];
         let fields: Vec<&str> = rows(&table)[row + 1].split(',').collect();
-        let words: Vec<&str> = text.lines().nth(row + 1).expect("a line").split_whitespace().collect();
+        let words: Vec<&str> = text
+            .lines()
+            .nth(row + 1)
+            .expect("a line")
+            .split_whitespace()
+            .collect();
         for (column, (key, value)) in expected.into_iter().enumerate() {
             let found = match key {
                 "barrier" => &entry["values"][0],
@@ -535,7 +644,8 @@ fn a_row_of_a_sweep_sums_up_its_motion() {
                 _ => &entry[key],
             };
             // The books are kept without the path in a sweep, in another order of summation.
-            let same = |found: f64, digits: f64| (found - value).abs() <= digits * value.abs().max(1e-3);
+            let same =
+                |found: f64, digits: f64| (found - value).abs() <= digits * value.abs().max(1e-3);
             assert!(same(float(found), 1e-9), "{key}: {found} {value}");
             let place = header.iter().position(|name| *name == key).expect(key);
             assert!(
@@ -544,7 +654,10 @@ fn a_row_of_a_sweep_sums_up_its_motion() {
                 fields[place]
             );
             if let Some(word) = words.get(column).filter(|_| column < 6) {
-                assert!(same(word.parse().expect("a number"), 1e-5), "{key}: {word} {value}");
+                assert!(
+                    same(word.parse().expect("a number"), 1e-5),
+                    "{key}: {word} {value}"
+                );
             }
         }
     }
@@ -593,7 +706,9 @@ fn long_lists_are_cut_and_a_last_impact_may_be_open() {
 
     // A state beyond an early end is not known.
     std::fs::write(&path, "[run]\nduration = 1e4\nstep_limit = 500\n").expect("a file");
-    let output = run(&[file, "--sample", "9000", "--sample", "1", "--format", "json"]);
+    let output = run(&[
+        file, "--sample", "9000", "--sample", "1", "--format", "json",
+    ]);
     let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(document["samples"][0]["x"], Value::Null);
     assert!(document["samples"][1]["x"].is_f64());
@@ -620,10 +735,19 @@ fn samples_and_final_state_agree_whatever_the_format() {
 #[test]
 fn a_sweep_prints_the_same_on_any_number_of_threads() {
     let file = example("damper");
-    let axes = ["--sweep", "zeta=0.01:0.05:9", "--sweep", "barrier=0.1:0.6:31"];
+    let axes = [
+        "--sweep",
+        "zeta=0.01:0.05:9",
+        "--sweep",
+        "barrier=0.1:0.6:31",
+    ];
     for format in ["text", "csv", "json"] {
         let on = |jobs: &str| {
-            let arguments = [&[file.as_str(), "--format", format, "--jobs", jobs], &axes[..]].concat();
+            let arguments = [
+                &[file.as_str(), "--format", format, "--jobs", jobs],
+                &axes[..],
+            ]
+            .concat();
             output(&arguments)
         };
         let one = on("1");
@@ -635,10 +759,14 @@ fn a_sweep_prints_the_same_on_any_number_of_threads() {
     assert_eq!(table.len(), 1 + 9 * 31);
     // A row is the motion that its parameters give.
     let single = output(&[&file, "--format", "csv", "--sweep", "barrier=0.1:0.6:31"]);
-    assert_eq!(table[1].split_once(',').map(|fields| fields.1), Some(rows(&single)[1]));
+    assert_eq!(
+        table[1].split_once(',').map(|fields| fields.1),
+        Some(rows(&single)[1])
+    );
 }
 
-/// Three parameters, each with its own spacing: every combination, the last fastest, in all formats.
+/// Three parameters, each with its own spacing: every combination, the last fastest, in all
+/// formats.
 #[test]
 fn a_sweep_of_many_parameters_names_every_column_and_its_unit() {
     let file = example("damper");
@@ -667,8 +795,9 @@ fn a_sweep_of_many_parameters_names_every_column_and_its_unit() {
         .iter()
         .map(|row| row.splitn(4, ',').take(3).collect::<Vec<_>>().join(" "))
         .collect();
-    let expected = ["10000", "1000000", "100000000"]
-        .map(|gamma| ["0.5 0.01", "0.5 0.05", "1.5 0.01", "1.5 0.05"].map(|rest| format!("{gamma} {rest}")));
+    let expected = ["10000", "1000000", "100000000"].map(|gamma| {
+        ["0.5 0.01", "0.5 0.05", "1.5 0.01", "1.5 0.05"].map(|rest| format!("{gamma} {rest}"))
+    });
     assert_eq!(starts, expected.concat());
     let document = json(&axes);
     let spacings: Vec<&Value> = document["axes"]
@@ -680,7 +809,10 @@ fn a_sweep_of_many_parameters_names_every_column_and_its_unit() {
     assert_eq!(spacings, ["logarithmic", "linear", "list"]);
     assert_eq!(document["axes"][0]["values"], json!([1e4, 1e6, 1e8]));
     let columns = document["columns"].as_array().expect("columns");
-    let names: Vec<&str> = columns.iter().filter_map(|column| column["name"].as_str()).collect();
+    let names: Vec<&str> = columns
+        .iter()
+        .filter_map(|column| column["name"].as_str())
+        .collect();
     assert_eq!(names.join(","), rows[0]);
     // Every column is a value or a key of a row.
     for column in &columns[3..] {
@@ -690,20 +822,33 @@ fn a_sweep_of_many_parameters_names_every_column_and_its_unit() {
             !row[name].is_null() || !row["final_state"][name].is_null() || name == "rest_time",
             "{name}"
         );
-        assert!(column["meaning"].as_str().is_some_and(|words| words.len() > 10));
+        assert!(
+            column["meaning"]
+                .as_str()
+                .is_some_and(|words| words.len() > 10)
+        );
     }
     // In text, a block for each gamma, and columns that do not run together.
     let text = output(&axes);
     let blocks: Vec<&str> = text.split("\n\n").collect();
     assert_eq!(blocks.len(), 3, "{text}");
-    let words: Vec<&str> = text.lines().next().expect("a header").split_whitespace().collect();
+    let words: Vec<&str> = text
+        .lines()
+        .next()
+        .expect("a header")
+        .split_whitespace()
+        .collect();
     assert_eq!(words[..4], ["gamma", "frequency_ratio", "beta", "impacts"]);
 }
 
-/// A main mass is swept over its own numbers and those of the pendulum, one or several at a time; what there is to vary is listed.
+/// A main mass is swept over its own numbers and those of the pendulum, one or several at a time;
+/// what there is to vary is listed.
 #[test]
 fn a_main_mass_is_swept_over_any_of_its_numbers() {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/primary/stick-slip.toml");
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/examples/primary/stick-slip.toml"
+    );
     let axes = [
         file,
         "--sweep",
@@ -727,7 +872,10 @@ fn a_main_mass_is_swept_over_any_of_its_numbers() {
         json!(alone["impacts"].as_array().expect("impacts").len())
     );
     let table = output(&[&axes[..], &["--format", "csv"]].concat());
-    assert!(table.starts_with("# units: barrier rad, displacement m, "), "{table}");
+    assert!(
+        table.starts_with("# units: barrier rad, displacement m, "),
+        "{table}"
+    );
     assert_eq!(table.lines().count(), 6);
     let text = output(&axes);
     assert!(
@@ -735,16 +883,25 @@ fn a_main_mass_is_swept_over_any_of_its_numbers() {
         "{text}"
     );
     for (sweep, said) in [
-        ("gap=1:2:2", "choose one of primary.mass, mass_ratio, stiffness, "),
+        (
+            "gap=1:2:2",
+            "choose one of primary.mass, mass_ratio, stiffness, ",
+        ),
         ("damping=1:2:2", "write primary.damping or contact.damping"),
         ("frequncy=1:2:2", "did you mean `frequency`?"),
         ("duration=1:2:2", "give it in [run]"),
         ("frequency=1:2:2", "[primary] force"),
-        ("stiffness=-1:2:2", "[primary] stiffness must be a positive number"),
+        (
+            "stiffness=-1:2:2",
+            "[primary] stiffness must be a positive number",
+        ),
     ] {
         let output = run(&[file, "--sweep", sweep]);
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.stdout.is_empty() && message.contains(said), "{sweep}: {message}");
+        assert!(
+            output.stdout.is_empty() && message.contains(said),
+            "{sweep}: {message}"
+        );
     }
     let output = run(&["x'' + k*x = 0", "--from", "x=1", "--sweep", "j=1:2:2"]);
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -754,7 +911,10 @@ fn a_main_mass_is_swept_over_any_of_its_numbers() {
 #[test]
 fn exit_codes_follow_the_verdict() {
     let file = example("paper");
-    for (arguments, code) in [(vec!["--tolerance", "1e-8"], 0), (vec!["--tolerance", "1e-14"], 3)] {
+    for (arguments, code) in [
+        (vec!["--tolerance", "1e-8"], 0),
+        (vec!["--tolerance", "1e-14"], 3),
+    ] {
         let output = run(&[&[file.as_str()], arguments.as_slice()].concat());
         assert_eq!(output.status.code(), Some(code), "{arguments:?}");
         assert!(!output.stdout.is_empty());
@@ -771,7 +931,10 @@ fn pictures_are_drawn_and_the_same_on_every_run() {
         (vec![], "Phase plane"),
         (vec!["--integrator", "both"], "Runge-Kutta"),
         (vec!["--sweep", "zeta=0:0.1:8"], "Impacts"),
-        (vec!["--sweep", "zeta=0:0.1:5", "--sweep", "alpha=0:0.1:6"], "Impacts"),
+        (
+            vec!["--sweep", "zeta=0:0.1:5", "--sweep", "alpha=0:0.1:6"],
+            "Impacts",
+        ),
     ] {
         let draw = |name: &str| {
             let path = folder.join(name);
@@ -780,7 +943,10 @@ fn pictures_are_drawn_and_the_same_on_every_run() {
             std::fs::read_to_string(path).expect("the picture was written")
         };
         let picture = draw("first.svg");
-        assert!(picture.contains("<svg") && picture.contains(words), "{arguments:?}");
+        assert!(
+            picture.contains("<svg") && picture.contains(words),
+            "{arguments:?}"
+        );
         assert_eq!(picture, draw("second.svg"));
     }
     std::fs::remove_dir_all(folder).expect("the folder goes");
@@ -808,12 +974,15 @@ fn the_examples_are_the_ones_the_readme_names() {
         .collect();
     assert!(!named.is_empty());
     for name in named {
-        assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join(name).exists(), "{name}");
+        assert!(
+            Path::new(env!("CARGO_MANIFEST_DIR")).join(name).exists(),
+            "{name}"
+        );
     }
 }
 
-/// An amplitude or a position at which a sine has no digits left is refused by every command that reads one, and one at which the
-/// force has them is not.
+/// An amplitude or a position at which a sine has no digits left is refused by every command that
+/// reads one, and one at which the force has them is not.
 #[test]
 fn a_place_without_digits_is_refused() {
     let of_file = |text: &str| {
@@ -835,7 +1004,14 @@ fn a_place_without_digits_is_refused() {
         &["simulate", &start],
         &["impact", &amplitude],
         &["materials", &amplitude],
-        &["simulate", "x'' + sin(x) = 0", "--from", "x=1e17", "--until", "1"],
+        &[
+            "simulate",
+            "x'' + sin(x) = 0",
+            "--from",
+            "x=1e17",
+            "--until",
+            "1",
+        ],
         &["derive", "x'' + x*(2 + sin(x)) = 0", "--at", "A=1e17"],
         &["compare", "x'' + x*(2 + cos(x)) = 0", "--at", "A=1e17"],
         &[
@@ -858,12 +1034,36 @@ fn a_place_without_digits_is_refused() {
             (Some(1), 0),
             "{arguments:?}: {message}"
         );
-        assert!(message.contains("no digits left"), "{arguments:?}: {message}");
+        assert!(
+            message.contains("no digits left"),
+            "{arguments:?}: {message}"
+        );
     }
     let answered: [&[&str]; 3] = [
-        &["derive", "x'' + x + sin(x) = 0", "--method", "exact", "--at", "A=1e15"],
-        &["derive", "x'' + x^3 = 0", "--method", "exact", "--at", "A=1e30"],
-        &["simulate", "x'' + exp(x) - 1 = 0", "--from", "x=1e-12", "--until", "1"],
+        &[
+            "derive",
+            "x'' + x + sin(x) = 0",
+            "--method",
+            "exact",
+            "--at",
+            "A=1e15",
+        ],
+        &[
+            "derive",
+            "x'' + x^3 = 0",
+            "--method",
+            "exact",
+            "--at",
+            "A=1e30",
+        ],
+        &[
+            "simulate",
+            "x'' + exp(x) - 1 = 0",
+            "--from",
+            "x=1e-12",
+            "--until",
+            "1",
+        ],
     ];
     for arguments in answered {
         let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
@@ -871,6 +1071,9 @@ fn a_place_without_digits_is_refused() {
             .output()
             .expect("the program starts");
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(!message.contains("no digits left"), "{arguments:?}: {message}");
+        assert!(
+            !message.contains("no digits left"),
+            "{arguments:?}: {message}"
+        );
     }
 }

@@ -27,7 +27,12 @@ fn a_comparison_fits_its_terminal() {
         printed(&run(&arguments, None)),
         printed(&run(&arguments, Some(80))),
     );
-    let longest = |text: &str| text.lines().map(|line| line.chars().count()).max().unwrap_or(0);
+    let longest = |text: &str| {
+        text.lines()
+            .map(|line| line.chars().count())
+            .max()
+            .unwrap_or(0)
+    };
     assert!(longest(&wide) > 120 && !wide.contains("Formulas"));
     assert!(longest(&file) <= 120, "{file}");
     assert!(longest(&narrow) <= 80, "{narrow}");
@@ -142,14 +147,22 @@ fn a_failed_impact_says_why() {
 #[test]
 fn a_table_fails_with_its_worst_row() {
     for (tolerance, code) in [("0.5", 0), ("1e-3", 3)] {
-        let arguments = ["compare", "x'' + x + x^3 = 0", "--at", "A=1", "--tolerance", tolerance];
+        let arguments = [
+            "compare",
+            "x'' + x + x^3 = 0",
+            "--at",
+            "A=1",
+            "--tolerance",
+            tolerance,
+        ];
         let output = run(&arguments, None);
         assert_eq!(output.status.code(), Some(code), "{}", printed(&output));
         assert_eq!(printed(&output).contains(" fail "), code == 3);
     }
 }
 
-/// What is beyond double precision is called that, and where, and not a pole or an end of the force.
+/// What is beyond double precision is called that, and where, and not a pole or an end of the
+/// force.
 #[test]
 fn an_overflow_is_called_one() {
     for (equation, amplitude, place, term) in [
@@ -170,16 +183,27 @@ fn an_overflow_is_called_one() {
             None,
         );
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
-        let expected = format!("the force overflows at x = {place}: `{term}` is beyond the range of double precision");
+        let expected = format!(
+            "the force overflows at x = {place}: `{term}` is beyond the range of double precision"
+        );
         assert!(message.contains(&expected), "{equation}: {message}");
     }
-    let table = printed(&run(&["compare", "x'' + x + x^99 = 0", "--at", "A=1e30"], Some(400)));
+    let table = printed(&run(
+        &["compare", "x'' + x + x^99 = 0", "--at", "A=1e30"],
+        Some(400),
+    ));
     assert!(
         table.contains("not known: the force overflows at x = 1e30: `x^99`"),
         "{table}"
     );
-    assert!(table.contains("w0 is beyond the range of double precision"), "{table}");
-    assert!(!table.contains("the force ends") && !table.contains("pole"), "{table}");
+    assert!(
+        table.contains("w0 is beyond the range of double precision"),
+        "{table}"
+    );
+    assert!(
+        !table.contains("the force ends") && !table.contains("pole"),
+        "{table}"
+    );
     // What escapes is not too stiff.
     let soft = [
         "compare",

@@ -1,10 +1,10 @@
 //! Systems of equations of any number, and the equations that energies make.
 //!
-//! In: rates as expressions, or a kinetic and a potential energy. Out: motions in numbers, equations of motion, units,
-//! dimensionless groups, equilibria and modes.
+//! In: rates as expressions, or a kinetic and a potential energy. Out: motions in numbers,
+//! equations of motion, units, dimensionless groups, equilibria and modes.
 //!
-//! Five names to know: [`system::System`], first-order equations that are followed by Taylor series or Runge-Kutta;
-//! [`mechanics`]'s Lagrangian, generalized forces, dimensions and modes.
+//! Five names to know: [`system::System`], first-order equations that are followed by Taylor series
+//! or Runge-Kutta; [`mechanics`]'s Lagrangian, generalized forces, dimensions and modes.
 
 #![warn(missing_docs)]
 

@@ -1,11 +1,13 @@
-//! First-order equations `y' = F(t, y)` of any number, written as expressions and followed by their Taylor series, or by
-//! Runge-Kutta, which knows nothing of the series: each is a check of the other.
+//! First-order equations `y' = F(t, y)` of any number, written as expressions and followed by their
+//! Taylor series, or by Runge-Kutta, which knows nothing of the series: each is a check of the
+//! other.
 //!
-//! In: the names of the states, the name of time, one expression a state, numbers for everything else. Out: a [`Path`] that
-//! answers every state at any time between, the events it met, and why it ended. Corners (`abs`, `sgn`, `H`, `max`, `min`) end a
-//! step where their argument changes its sign and begin the next on the other side; a motion that sticks to a corner, as dry
-//! friction makes it, is handed back up to there with its reason. Where a function turns faster than the motion, as a narrow well does,
-//! its argument tells beforehand, and steps end beside it.
+//! In: the names of the states, the name of time, one expression a state, numbers for everything
+//! else. Out: a [`Path`] that answers every state at any time between, the events it met, and why
+//! it ended. Corners (`abs`, `sgn`, `H`, `max`, `min`) end a step where their argument changes its
+//! sign and begin the next on the other side; a motion that sticks to a corner, as dry friction
+//! makes it, is handed back up to there with its reason. Where a function turns faster than the
+//! motion, as a narrow well does, its argument tells beforehand, and steps end beside it.
 //!
 //! ```
 //! # use lindstedt_dynamics as lindstedt;
@@ -39,7 +41,8 @@ use taylor::{Expansion, Step};
 
 /// Equations ready to be followed.
 ///
-/// A pendulum of two equal links: angles a and b from the vertical, rates p and q; length, mass and gravity are one.
+/// A pendulum of two equal links: angles a and b from the vertical, rates p and q; length, mass and
+/// gravity are one.
 ///
 /// ```
 /// # use lindstedt_dynamics as lindstedt;
@@ -101,10 +104,14 @@ pub enum SystemError {
     #[error("event {0}, counted from 0, has no finite value or no series at the start")]
     Event(usize),
     /// A state that begins where numbers end.
-    #[error("`{0}` begins at {1:e}, but no state is followed beyond 1e300: count it in a larger unit")]
+    #[error(
+        "`{0}` begins at {1:e}, but no state is followed beyond 1e300: count it in a larger unit"
+    )]
     Large(Symbol, f64),
     /// A start, an end or a tolerance that is no finite number, or an end before the start.
-    #[error("start and end must be finite, the end after the start, the tolerance between 1e-16 and 0.1")]
+    #[error(
+        "start and end must be finite, the end after the start, the tolerance between 1e-16 and 0.1"
+    )]
     Bounds,
 }
 
@@ -114,7 +121,8 @@ pub enum Integrator {
     /// By the Taylor series of the states, to rounding accuracy.
     #[default]
     Taylor,
-    /// By Verner's Runge-Kutta pair of order 9, which evaluates the right sides and expands nothing.
+    /// By Verner's Runge-Kutta pair of order 9, which evaluates the right sides and expands
+    /// nothing.
     RungeKutta,
 }
 
@@ -123,7 +131,8 @@ pub enum Integrator {
 pub struct Options {
     /// By which integrator.
     pub integrator: Integrator,
-    /// Error of a step, relative to the size of each state on it; Runge-Kutta keeps no less than 1e-14.
+    /// Error of a step, relative to the size of each state on it; Runge-Kutta keeps no less than
+    /// 1e-14.
     pub tolerance: f64,
     /// Steps after which the run ends; those of Runge-Kutta that had to be repeated count.
     pub step_limit: usize,
@@ -228,7 +237,8 @@ pub enum End {
     StepLimit,
     /// The steps vanish, or a state or an event has no value any more: a pole, or a root at zero.
     Singular,
-    /// A state leaves the range of numbers: it is larger than 1e300, or so large that its rates are.
+    /// A state leaves the range of numbers: it is larger than 1e300, or so large that its rates
+    /// are.
     Overflow,
     /// It stays on a corner: the rates on both sides lead back to it.
     Sticks,
@@ -236,10 +246,12 @@ pub enum End {
     Interrupted,
 }
 
-/// No state is followed farther: doubles end at 1.8e308, and sums and products within a step need room.
+/// No state is followed farther: doubles end at 1.8e308, and sums and products within a step need
+/// room.
 const LARGEST: f64 = 1e300;
 
-/// A state from which on rates without a value are too large rather than undefined: fourth powers are beyond [`LARGEST`].
+/// A state from which on rates without a value are too large rather than undefined: fourth powers
+/// are beyond [`LARGEST`].
 const LARGE: f64 = 1e75;
 
 /// Whether all of these are numbers that are followed.
@@ -247,7 +259,8 @@ fn within_range(mut states: impl Iterator<Item = f64>) -> bool {
     states.all(|state| state.abs() <= LARGEST)
 }
 
-/// Why a run ends in these states where its rates have no value, or no next step is possible, behind a step from one time to another.
+/// Why a run ends in these states where its rates have no value, or no next step is possible,
+/// behind a step from one time to another.
 fn without_value(mut states: impl Iterator<Item = f64>, step: [f64; 2]) -> End {
     match states.any(|state| state.abs() > LARGE) && !is_vanishing(step) {
         true => End::Overflow,
@@ -255,13 +268,14 @@ fn without_value(mut states: impl Iterator<Item = f64>, step: [f64; 2]) -> End {
     }
 }
 
-/// Whether a step from one time to another, both since the start, is so short that it stands before a pole: what its states have become
-/// there means nothing.
+/// Whether a step from one time to another, both since the start, is so short that it stands before
+/// a pole: what its states have become there means nothing.
 fn is_vanishing([from, to]: [f64; 2]) -> bool {
     to - from <= 1e-10 * to
 }
 
-/// The last place up to this one at which all states are within the range of numbers, where they leave it before.
+/// The last place up to this one at which all states are within the range of numbers, where they
+/// leave it before.
 fn end_of_range(length: f64, is_within: impl Fn(f64) -> bool) -> Option<f64> {
     const HALVINGS: u32 = 60;
     if is_within(length) {
@@ -333,8 +347,9 @@ impl Path {
         }
     }
 
-    /// The states at many times, in increasing order: those of the times that are within the path are added to `kept`, and the first
-    /// states there to the columns, one each. Costs less than as many calls of [`Path::at`] and has the same values.
+    /// The states at many times, in increasing order: those of the times that are within the path
+    /// are added to `kept`, and the first states there to the columns, one each. Costs less than as
+    /// many calls of [`Path::at`] and has the same values.
     pub fn sample(&self, times: &[f64], kept: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
         match &self.motion {
             Motion::Taylor { steps, start } => {
@@ -347,7 +362,9 @@ impl Path {
             }
             Motion::RungeKutta(_) => {
                 for time in times {
-                    let Some(states) = self.at(*time) else { continue };
+                    let Some(states) = self.at(*time) else {
+                        continue;
+                    };
                     kept.push(*time);
                     for (column, state) in columns.iter_mut().zip(states) {
                         column.push(state);
@@ -381,8 +398,9 @@ pub struct Solver {
 }
 
 impl Solver {
-    /// These equations take other numbers for their letters. `None` says that they have to be made ready anew: beside corners, whose
-    /// arguments may be in proportion for some numbers and not for others, and where a letter is one, a factor that may be left out.
+    /// These equations take other numbers for their letters. `None` says that they have to be made
+    /// ready anew: beside corners, whose arguments may be in proportion for some numbers and not
+    /// for others, and where a letter is one, a factor that may be left out.
     #[must_use]
     pub fn with_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<Self> {
         let Some(Ok(expansion)) = &self.expansion else {
@@ -416,20 +434,34 @@ impl Solver {
         self.system.check(start, values, end, &self.options)?;
         let (system, events, options) = (&self.system, &self.events, &self.options);
         match &self.expansion {
-            Some(expansion) => taylor::follow(system, [start, end], values, events, options, expansion.clone()?),
+            Some(expansion) => taylor::follow(
+                system,
+                [start, end],
+                values,
+                events,
+                options,
+                expansion.clone()?,
+            ),
             None => runge_kutta::follow(system, [start, end], values, events, options),
         }
     }
 }
 
 impl System {
-    /// The equations `(state, right side)` in the time `t`, as texts; every other symbol has its value in `numbers`.
+    /// The equations `(state, right side)` in the time `t`, as texts; every other symbol has its
+    /// value in `numbers`.
     ///
     /// # Errors
     /// [`SystemError`].
     pub fn parse(equations: &[(&str, &str)], numbers: &[(&str, f64)]) -> Result<Self, SystemError> {
-        let states: Vec<Symbol> = equations.iter().map(|(state, _)| Symbol::new(state)).collect();
-        let right: Result<Vec<Expr>, ParseError> = equations.iter().map(|(_, right)| parse_expression(right)).collect();
+        let states: Vec<Symbol> = equations
+            .iter()
+            .map(|(state, _)| Symbol::new(state))
+            .collect();
+        let right: Result<Vec<Expr>, ParseError> = equations
+            .iter()
+            .map(|(_, right)| parse_expression(right))
+            .collect();
         let numbers = numbers
             .iter()
             .map(|(name, value)| (Symbol::new(name), *value))
@@ -468,18 +500,24 @@ impl System {
         Ok(system)
     }
 
-    /// The same equations with times that no step crosses: where the right sides turn faster than can be seen from afar, as at both
-    /// ends of a short pulse. In any order; what is no finite number is left out.
+    /// The same equations with times that no step crosses: where the right sides turn faster than
+    /// can be seen from afar, as at both ends of a short pulse. In any order; what is no finite
+    /// number is left out.
     #[must_use]
     pub fn with_critical_times(self, times: &[f64]) -> Self {
-        let mut critical: Vec<f64> = times.iter().copied().filter(|time| time.is_finite()).collect();
+        let mut critical: Vec<f64> = times
+            .iter()
+            .copied()
+            .filter(|time| time.is_finite())
+            .collect();
         critical.sort_by(f64::total_cmp);
         Self { critical, ..self }
     }
 
-    /// Follows the states from `start` until `end`, or to the first event that stops. Costs, by Taylor series, for each step of
-    /// order p, p^2 operations a product or function of the right sides; by Runge-Kutta, which makes three to five times as many
-    /// steps, 22 evaluations of them.
+    /// Follows the states from `start` until `end`, or to the first event that stops. Costs, by
+    /// Taylor series, for each step of order p, p^2 operations a product or function of the right
+    /// sides; by Runge-Kutta, which makes three to five times as many steps, 22 evaluations of
+    /// them.
     ///
     /// # Errors
     /// [`SystemError`] where the run cannot begin; one that ends early says so by [`Path::reason`].
@@ -512,7 +550,9 @@ impl System {
                 let expansion = taylor::expansion(self, events, options.tolerance)?;
                 taylor::follow(self, [start, end], values, events, options, expansion)
             }
-            Integrator::RungeKutta => runge_kutta::follow(self, [start, end], values, events, options),
+            Integrator::RungeKutta => {
+                runge_kutta::follow(self, [start, end], values, events, options)
+            }
         }
     }
 
@@ -531,7 +571,13 @@ impl System {
     }
 
     /// Whether it can be followed from these values between these times.
-    fn check(&self, start: f64, values: &[f64], end: f64, options: &Options) -> Result<(), SystemError> {
+    fn check(
+        &self,
+        start: f64,
+        values: &[f64],
+        end: f64,
+        options: &Options,
+    ) -> Result<(), SystemError> {
         let size = self.state.len();
         if values.len() != size {
             return Err(SystemError::Length {
@@ -539,11 +585,16 @@ impl System {
                 right_sides: values.len(),
             });
         }
-        let finite = start.is_finite() && end.is_finite() && values.iter().all(|value| value.is_finite());
+        let finite =
+            start.is_finite() && end.is_finite() && values.iter().all(|value| value.is_finite());
         if !finite || end < start || !(1e-16..=0.1).contains(&options.tolerance) {
             return Err(SystemError::Bounds);
         }
-        let large = self.state.iter().zip(values).find(|(_, value)| value.abs() > LARGEST);
+        let large = self
+            .state
+            .iter()
+            .zip(values)
+            .find(|(_, value)| value.abs() > LARGEST);
         if let Some((state, value)) = large {
             return Err(SystemError::Large(*state, *value));
         }
@@ -551,7 +602,8 @@ impl System {
     }
 }
 
-/// A corner whose argument jumps at another corner: which side it is on after the jump does not follow from where it was.
+/// A corner whose argument jumps at another corner: which side it is on after the jump does not
+/// follow from where it was.
 fn jump_in_corner(expression: &Expr) -> Option<Expr> {
     use Function::{Absolute, Maximum, Minimum, Sign, Step};
     let jumps = |part: &Expr| part.contains_function(Step) || part.contains_function(Sign);

@@ -1,6 +1,7 @@
 //! Floating-point numbers as people write them.
 //!
-//! In: a double or a fraction, and how many digits. Out: decimal text, or the fraction that these digits stand for.
+//! In: a double or a fraction, and how many digits. Out: decimal text, or the fraction that these
+//! digits stand for.
 
 use num_traits::{Pow, Signed, Zero};
 
@@ -55,13 +56,19 @@ pub fn rounded_to(value: f64, digits: usize) -> Rational {
 /// The fraction of a decimal in the notation of `{:e}`.
 fn parsed(text: &str) -> Rational {
     let (mantissa, exponent) = text.split_once('e').unwrap_or((text, "0"));
-    let decimals = mantissa.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let decimals = mantissa
+        .split_once('.')
+        .map_or(0, |(_, decimals)| decimals.len());
     let digits: Integer = mantissa.replace('.', "").parse().unwrap_or_default();
     let power = exponent.parse::<i32>().unwrap_or(0) - decimals as i32;
     let ten = Rational::from_integer(10.into());
     let scale = num_traits::pow(ten, power.unsigned_abs() as usize);
     let digits = Rational::from_integer(digits);
-    if power < 0 { digits / scale } else { digits * scale }
+    if power < 0 {
+        digits / scale
+    } else {
+        digits * scale
+    }
 }
 
 /// So many significant digits of a fraction, as a fraction, however large or small it is.
@@ -70,8 +77,8 @@ pub fn rounded_fraction(value: &Rational, digits: usize) -> Rational {
     Rational::from_integer(mantissa) * Pow::pow(Rational::from_integer(10.into()), power)
 }
 
-/// The decimals of so many significant digits next to a fraction, the first not above it and the second not below: both are the fraction
-/// itself where it is one.
+/// The decimals of so many significant digits next to a fraction, the first not above it and the
+/// second not below: both are the fraction itself where it is one.
 pub fn neighbours(value: &Rational, digits: usize) -> [Rational; 2] {
     let (_, power) = scientific(value, digits);
     let unit: Rational = Pow::pow(Rational::from_integer(10.into()), power);
@@ -79,7 +86,8 @@ pub fn neighbours(value: &Rational, digits: usize) -> [Rational; 2] {
     [count.floor() * &unit, count.ceil() * unit]
 }
 
-/// A fraction with so many significant digits, as [`significant`] writes it, beyond the range of doubles as well.
+/// A fraction with so many significant digits, as [`significant`] writes it, beyond the range of
+/// doubles as well.
 pub fn significant_fraction(value: &Rational, digits: usize) -> String {
     let double = to_f64(value);
     if value.is_zero() || double.is_normal() {
@@ -100,7 +108,8 @@ fn in_powers(value: &Rational, mantissa: &Integer, power: i32) -> String {
     format!("{sign}{first}{point}{rest}e{exponent}")
 }
 
-/// The decimal of so many significant digits next below a number that is not negative, as [`significant`] writes it.
+/// The decimal of so many significant digits next below a number that is not negative, as
+/// [`significant`] writes it.
 pub fn rounded_down(value: f64, digits: usize) -> String {
     rounded_to_side(value, digits, 0)
 }
@@ -117,8 +126,8 @@ fn rounded_to_side(value: f64, digits: usize, side: usize) -> String {
     }
 }
 
-/// The fraction that the shortest decimal of a finite double stands for, 1/100 for `0.01`: the number that was typed, where it had
-/// at most fifteen digits.
+/// The fraction that the shortest decimal of a finite double stands for, 1/100 for `0.01`: the
+/// number that was typed, where it had at most fifteen digits.
 pub fn as_typed(value: f64) -> Rational {
     parsed(&format!("{value:e}"))
 }
@@ -131,7 +140,8 @@ pub fn not_above_typed(value: f64) -> f64 {
     }
 }
 
-/// A decimal in full, as [`significant`] writes it; `None` where it has more than forty significant digits.
+/// A decimal in full, as [`significant`] writes it; `None` where it has more than forty significant
+/// digits.
 pub fn exact_decimal(value: &Rational) -> Option<String> {
     const MOST: usize = 40;
     (1..=MOST)
@@ -146,7 +156,8 @@ pub fn exact_decimal(value: &Rational) -> Option<String> {
         })
 }
 
-/// A fraction with so many decimals at most, without zeros at the end; of what is very large or small fifteen digits.
+/// A fraction with so many decimals at most, without zeros at the end; of what is very large or
+/// small fifteen digits.
 pub fn plain_decimal(value: &Rational, decimals: usize) -> String {
     match has_plain_decimals(value) {
         true => fixed(value, decimals),
@@ -194,8 +205,8 @@ pub fn ends(value: &Rational) -> bool {
     rest == Integer::from(1)
 }
 
-/// The decimal that a fraction is, where it ends and its text is shorter than that of a long fraction: `1e-300`, `3.00853856091339`;
-/// `None` for short fractions and all others.
+/// The decimal that a fraction is, where it ends and its text is shorter than that of a long
+/// fraction: `1e-300`, `3.00853856091339`; `None` for short fractions and all others.
 pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
     /// The longest fraction that is written as one.
     const SHORT: usize = 12;
@@ -203,7 +214,8 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
     const WRITTEN_OUT: usize = 21;
     /// The most characters; a longer one is no number of an equation that somebody typed.
     const LONGEST_BITS: u64 = 4_000;
-    /// Digits that tell any two doubles apart: more of them are no number that was rounded or typed.
+    /// Digits that tell any two doubles apart: more of them are no number that was rounded or
+    /// typed.
     const DIGITS: usize = 17;
     let bits = [value.numer(), value.denom()].map(Integer::bits);
     if bits.iter().sum::<u64>() < 30 || bits.iter().any(|bits| *bits > LONGEST_BITS) {
@@ -225,7 +237,8 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
     if rest != Integer::from(1) {
         return None;
     }
-    let mut mantissa = (value.abs() * Pow::pow(Rational::from_integer(ten.clone()), decimals)).to_integer();
+    let mut mantissa =
+        (value.abs() * Pow::pow(Rational::from_integer(ten.clone()), decimals)).to_integer();
     while decimals <= 0 && has_factor(&mantissa, &ten) && !mantissa.is_zero() {
         mantissa /= &ten;
         decimals -= 1;
@@ -240,12 +253,21 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
         (whole, fraction) => format!("{whole}.{fraction}"),
     };
     let text = match exponent {
-        -4..0 => format!("0.{}{digits}", "0".repeat(exponent.unsigned_abs() as usize - 1)),
-        0.. if decimals >= 0 && (exponent as usize) < WRITTEN_OUT => with_point(&digits, exponent as usize + 1),
+        -4..0 => format!(
+            "0.{}{digits}",
+            "0".repeat(exponent.unsigned_abs() as usize - 1)
+        ),
+        0.. if decimals >= 0 && (exponent as usize) < WRITTEN_OUT => {
+            with_point(&digits, exponent as usize + 1)
+        }
         _ => format!("{}e{exponent}", with_point(&digits, 1)),
     };
     let fraction = value.abs().to_string().len();
-    let longest = if value.is_integer() { WRITTEN_OUT } else { SHORT };
+    let longest = if value.is_integer() {
+        WRITTEN_OUT
+    } else {
+        SHORT
+    };
     let sign = if value.is_negative() { "-" } else { "" };
     (fraction > longest && text.len() < fraction).then(|| format!("{sign}{text}"))
 }
@@ -314,11 +336,15 @@ mod tests {
         }
         assert_eq!(rounded_fraction(&Rational::zero(), 15), Rational::zero());
         assert_eq!(significant_fraction(&third, 6), "0.333333");
-        assert_eq!(significant_fraction(&(-&third * ten(500)), 6), "-3.33333e499");
+        assert_eq!(
+            significant_fraction(&(-&third * ten(500)), 6),
+            "-3.33333e499"
+        );
         assert_eq!(significant_fraction(&ten(-400), 6), "1e-400");
         let long = Rational::new(10_i64.pow(17).into(), (3 * 10_i64.pow(16)).into());
         assert_eq!(plain_decimal(&-long, 20), "-3.33333333333333333333");
-        let texts = [ten(0), ten(-3) * &third, ten(30), Rational::zero()].map(|value| plain_decimal(&value, 6));
+        let texts = [ten(0), ten(-3) * &third, ten(30), Rational::zero()]
+            .map(|value| plain_decimal(&value, 6));
         assert_eq!(texts, ["1", "0.000333", "1e30", "0"]);
     }
 }

@@ -1,4 +1,5 @@
-//! Independent pieces of work on all threads of the current pool; one after the other without the feature `parallel`.
+//! Independent pieces of work on all threads of the current pool; one after the other without the
+//! feature `parallel`.
 //!
 //! What comes back is in the order of the pieces, whatever the number of threads.
 
@@ -11,7 +12,9 @@ pub fn each<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec
     let results: Vec<Mutex<Option<T>>> = items.iter().map(|_| Mutex::new(None)).collect();
     run(items.len(), &|number| {
         let result = work(&items[number]);
-        *results[number].lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
+        *results[number]
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner) = Some(result);
     });
     let results = results.into_iter();
     results
@@ -19,7 +22,8 @@ pub fn each<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec
         .collect()
 }
 
-/// Every number up to this one; a function of its own, so that it is built once for all kinds of work.
+/// Every number up to this one; a function of its own, so that it is built once for all kinds of
+/// work.
 fn run(count: usize, work: &(dyn Fn(usize) + Sync)) {
     let letters = Letters::here();
     let work = &|number| {
@@ -27,7 +31,10 @@ fn run(count: usize, work: &(dyn Fn(usize) + Sync)) {
         work(number);
     };
     #[cfg(feature = "parallel")]
-    rayon::iter::ParallelIterator::for_each(rayon::iter::IntoParallelIterator::into_par_iter(0..count), work);
+    rayon::iter::ParallelIterator::for_each(
+        rayon::iter::IntoParallelIterator::into_par_iter(0..count),
+        work,
+    );
     #[cfg(not(feature = "parallel"))]
     (0..count).for_each(work);
 }

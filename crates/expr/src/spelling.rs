@@ -2,7 +2,8 @@
 
 use strsim::levenshtein;
 
-/// The name among `known` that needs the fewest changes to become `typed`, where at most a third of it changes.
+/// The name among `known` that needs the fewest changes to become `typed`, where at most a third of
+/// it changes.
 ///
 /// ```
 /// use lindstedt_expr::spelling::nearest;
@@ -19,10 +20,12 @@ pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
         .map(|(_, name)| name)
 }
 
-/// A text from a file as it may be shown: what would steer a terminal, or turn the order of the letters, stands as its code, `\u{1b}`. Line ends
-/// and tabs stay.
+/// A text from a file as it may be shown: what would steer a terminal, or turn the order of the
+/// letters, stands as its code, `\u{1b}`. Line ends and tabs stay.
 pub fn printable(text: &str) -> String {
-    escaped(text, |letter| !matches!(letter, '\n' | '\t') && is_invisible(letter))
+    escaped(text, |letter| {
+        !matches!(letter, '\n' | '\t') && is_invisible(letter)
+    })
 }
 
 /// A text from a file in one line, line ends and tabs as codes too.
@@ -30,7 +33,8 @@ pub fn printable_in_line(text: &str) -> String {
     escaped(text, is_invisible)
 }
 
-/// Returns whether a letter steers what shows it: control characters, and marks of the direction of writing.
+/// Returns whether a letter steers what shows it: control characters, and marks of the direction of
+/// writing.
 pub fn is_invisible(letter: char) -> bool {
     letter.is_control()
         || matches!(letter, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
@@ -53,7 +57,10 @@ mod tests {
 
     #[test]
     fn finds_what_was_meant_and_nothing_far_fetched() {
-        assert_eq!(nearest("bariers", ["amplitude", "barrier"]), Some("barrier"));
+        assert_eq!(
+            nearest("bariers", ["amplitude", "barrier"]),
+            Some("barrier")
+        );
         assert_eq!(nearest("velocity", ["amplitude", "barrier"]), None);
     }
 }

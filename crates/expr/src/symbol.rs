@@ -1,7 +1,8 @@
 //! Names of parameters, coordinates and derivatives.
 //!
-//! Every name is stored once for the life of the program, so a [`Symbol`] is a pointer and a length, copies freely and
-//! compares by its text: the normal form of an expression, and with it every printed formula, is the same on every run.
+//! Every name is stored once for the life of the program, so a [`Symbol`] is a pointer and a
+//! length, copies freely and compares by its text: the normal form of an expression, and with it
+//! every printed formula, is the same on every run.
 
 pub mod letters;
 
@@ -11,7 +12,8 @@ use std::sync::{LazyLock, Mutex, PoisonError};
 
 /// A name such as `eps`, `A`, `x` or `x'`.
 ///
-/// The derivative of a coordinate is the same name with primes: `x'` is the velocity, `x''` the acceleration.
+/// The derivative of a coordinate is the same name with primes: `x'` is the velocity, `x''` the
+/// acceleration.
 ///
 /// ```
 /// # use lindstedt_expr as lindstedt;
@@ -23,13 +25,15 @@ use std::sync::{LazyLock, Mutex, PoisonError};
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Symbol(&'static str);
 
-/// Greek letters by name: what a coordinate may be called beside a single letter, and what is set as that letter in formulas.
+/// Greek letters by name: what a coordinate may be called beside a single letter, and what is set
+/// as that letter in formulas.
 pub const GREEK: [&str; 21] = [
-    "alpha", "beta", "gamma", "delta", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi", "rho", "sigma",
-    "tau", "phi", "chi", "psi", "omega", "Omega", "Lambda",
+    "alpha", "beta", "gamma", "delta", "zeta", "eta", "theta", "kappa", "lambda", "mu", "nu", "xi",
+    "rho", "sigma", "tau", "phi", "chi", "psi", "omega", "Omega", "Lambda",
 ];
 
-/// What the text of a symbol ends with that is [apart](Symbol::apart); no name that is typed has it.
+/// What the text of a symbol ends with that is [apart](Symbol::apart); no name that is typed has
+/// it.
 const APART: char = '\u{1}';
 
 static NAMES: LazyLock<Mutex<HashSet<&'static str>>> = LazyLock::new(Mutex::default);
@@ -51,12 +55,14 @@ impl Symbol {
         self.0.strip_suffix(APART).unwrap_or(self.0)
     }
 
-    /// The name as it is printed: that of something in an answer gives way to the same name of an equation, see `Letters`.
+    /// The name as it is printed: that of something in an answer gives way to the same name of an
+    /// equation, see `Letters`.
     pub fn written(self) -> &'static str {
         letters::written(self)
     }
 
-    /// A symbol of the same name for something in an equation, which is not the symbol of that name in an answer.
+    /// A symbol of the same name for something in an equation, which is not the symbol of that name
+    /// in an answer.
     ///
     /// ```
     /// # use lindstedt_expr as lindstedt;
@@ -78,7 +84,11 @@ impl Symbol {
     /// The symbol of another name that is apart where this one is.
     fn with_name(self, name: &str) -> Self {
         let symbol = Self::new(name);
-        if self.is_apart() { symbol.apart() } else { symbol }
+        if self.is_apart() {
+            symbol.apart()
+        } else {
+            symbol
+        }
     }
 
     /// The time derivative of a coordinate: one more prime.
@@ -93,7 +103,9 @@ impl Symbol {
 
     /// Whether the name is that of a Greek letter, with an index or without.
     pub fn is_greek(self) -> bool {
-        let stem = self.name().trim_end_matches(|letter: char| letter.is_ascii_digit());
+        let stem = self
+            .name()
+            .trim_end_matches(|letter: char| letter.is_ascii_digit());
         GREEK.contains(&stem.trim_end_matches('_'))
     }
 
@@ -103,8 +115,8 @@ impl Symbol {
     }
 }
 
-/// A name for something that the program introduces: `wanted` where nothing in `taken` is called so, else the first of
-/// `wanted_`, `wanted__`, ... that is free.
+/// A name for something that the program introduces: `wanted` where nothing in `taken` is called
+/// so, else the first of `wanted_`, `wanted__`, ... that is free.
 ///
 /// Every name in an answer that is not the user's own comes from here or from [`fresh_stem`].
 ///
@@ -122,7 +134,8 @@ pub fn fresh(wanted: &str, taken: &[Symbol]) -> Symbol {
     Symbol::new(&name)
 }
 
-/// As [`fresh`] for a whole family `stem0`, `stem1`, ..., `stem_n`: a stem that no name in `taken` continues with digits.
+/// As [`fresh`] for a whole family `stem0`, `stem1`, ..., `stem_n`: a stem that no name in `taken`
+/// continues with digits.
 ///
 /// ```
 /// # use lindstedt_expr as lindstedt;
@@ -133,7 +146,9 @@ pub fn fresh(wanted: &str, taken: &[Symbol]) -> Symbol {
 pub fn fresh_stem(wanted: &str, taken: &[Symbol]) -> String {
     let continues = |stem: &str, symbol: &Symbol| {
         let rest = symbol.name().strip_prefix(stem);
-        rest.is_some_and(|rest| rest.bytes().all(|letter| letter.is_ascii_digit()) && !rest.is_empty())
+        rest.is_some_and(|rest| {
+            rest.bytes().all(|letter| letter.is_ascii_digit()) && !rest.is_empty()
+        })
     };
     let mut stem = wanted.to_owned();
     while taken.iter().any(|symbol| continues(&stem, symbol)) {
@@ -142,7 +157,8 @@ pub fn fresh_stem(wanted: &str, taken: &[Symbol]) -> String {
     stem
 }
 
-/// The name of the phase of a motion: `theta`, or `phi` where the equation calls something of its own `theta`.
+/// The name of the phase of a motion: `theta`, or `phi` where the equation calls something of its
+/// own `theta`.
 ///
 /// ```
 /// # use lindstedt_expr as lindstedt;

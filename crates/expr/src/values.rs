@@ -1,7 +1,8 @@
 //! Exact values of symbols, as a user gives them.
 //!
-//! In: names with numbers or multiples of pi, as text or one by one. Out: the same, exact or as doubles; in the units of whoever
-//! wrote the equation. What is no number, or is given twice, is a [`ValueError`].
+//! In: names with numbers or multiples of pi, as text or one by one. Out: the same, exact or as
+//! doubles; in the units of whoever wrote the equation. What is no number, or is given twice, is a
+//! [`ValueError`].
 //!
 //! ```
 //! # use lindstedt_expr as lindstedt;
@@ -28,7 +29,9 @@ pub struct Values(BTreeMap<Symbol, Expr>);
 #[non_exhaustive]
 pub enum ValueError {
     /// It contains a symbol.
-    #[error("the value `{value}` of `{name}` contains `{symbol}`: give a number, such as 3/2 or pi/3")]
+    #[error(
+        "the value `{value}` of `{name}` contains `{symbol}`: give a number, such as 3/2 or pi/3"
+    )]
     NotANumber {
         /// The name.
         name: Symbol,
@@ -100,7 +103,11 @@ impl Values {
 
     /// The values of `names`, and the others.
     pub fn split(&self, names: &[Symbol]) -> (BTreeMap<Symbol, Expr>, Self) {
-        let (those, others) = self.0.clone().into_iter().partition(|(name, _)| names.contains(name));
+        let (those, others) = self
+            .0
+            .clone()
+            .into_iter()
+            .partition(|(name, _)| names.contains(name));
         (those, Self(others))
     }
 
@@ -123,7 +130,11 @@ impl FromStr for Values {
 
     fn from_str(text: &str) -> Result<Self, ValueError> {
         let mut values = Self::default();
-        for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+        for part in text
+            .split(',')
+            .map(str::trim)
+            .filter(|part| !part.is_empty())
+        {
             let form = || ValueError::Form(part.to_owned());
             let (name, value) = part.split_once('=').ok_or_else(form)?;
             let name = parse_expression(name)

@@ -1,10 +1,10 @@
 //! The pendulum that hits an elastic barrier, and the search for the best damper.
 //!
-//! In: masses, lengths, a contact law. Out: three phases in closed form, all forces event by event, sweeps, materials, the design
-//! that rests soonest.
+//! In: masses, lengths, a contact law. Out: three phases in closed form, all forces event by event,
+//! sweeps, materials, the design that rests soonest.
 //!
-//! Five names to know: [`impact::Model`], equation (7); [`mod@impact::chain`], impacts in closed form; [`impact::primary`], the main mass;
-//! `impact::materials`; [`optimize::optimize`].
+//! Five names to know: [`impact::Model`], equation (7); [`mod@impact::chain`], impacts in closed
+//! form; [`impact::primary`], the main mass; `impact::materials`; [`optimize::optimize`].
 
 #![warn(missing_docs)]
 

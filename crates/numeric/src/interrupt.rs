@@ -1,4 +1,5 @@
-//! A request to stop: long work looks at it between its steps, and hands back what it has. How far it has come is told the same way.
+//! A request to stop: long work looks at it between its steps, and hands back what it has. How far
+//! it has come is told the same way.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -52,7 +53,10 @@ impl Counter {
 
     /// How many parts are done, of how many; of none before the work has begun.
     pub fn read(&self) -> (u64, u64) {
-        (self.done.load(Ordering::Relaxed), self.all.load(Ordering::Relaxed))
+        (
+            self.done.load(Ordering::Relaxed),
+            self.all.load(Ordering::Relaxed),
+        )
     }
 }
 

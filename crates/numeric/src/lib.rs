@@ -1,9 +1,12 @@
-//! Motions and searches in plain numbers: everything takes closures and slices of `f64`, nothing knows an equation in symbols.
+//! Motions and searches in plain numbers: everything takes closures and slices of `f64`, nothing
+//! knows an equation in symbols.
 //!
-//! In: a right-hand side, a start, tolerances. Out: trajectories, roots, integrals, periods, the best of a search.
+//! In: a right-hand side, a start, tolerances. Out: trajectories, roots, integrals, periods, the
+//! best of a search.
 //!
-//! Five names to know: [`numeric::ode`], Runge-Kutta, roots and quadrature; [`numeric::periodic`], periodic orbits by shooting;
-//! [`numeric::return_map`], limit cycles; [`genetic`], the genetic algorithm; [`interrupt::Interrupt`], a request to stop.
+//! Five names to know: [`numeric::ode`], Runge-Kutta, roots and quadrature; [`numeric::periodic`],
+//! periodic orbits by shooting; [`numeric::return_map`], limit cycles; [`genetic`], the genetic
+//! algorithm; [`interrupt::Interrupt`], a request to stop.
 
 #![warn(missing_docs)]
 

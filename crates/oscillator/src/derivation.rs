@@ -1,4 +1,5 @@
-//! How an answer came about, as it stands on paper: the orders of an expansion, and lines of words and equations.
+//! How an answer came about, as it stands on paper: the orders of an expansion, and lines of words
+//! and equations.
 //!
 //! In: what a method did, in its order. Out: [`Step`]s and [`Line`]s for every format to lay out.
 //!
@@ -13,8 +14,9 @@ use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
 use crate::symbol::Symbol;
 
-/// One order of an expansion, `y_n'' + y_n = right_side + (resonance + W_n) cos(theta)`, in units of the amplitude and of the
-/// linear frequency (of omega in homotopy perturbation). Every part carries its power of the small parameter.
+/// One order of an expansion, `y_n'' + y_n = right_side + (resonance + W_n) cos(theta)`, in units
+/// of the amplitude and of the linear frequency (of omega in homotopy perturbation). Every part
+/// carries its power of the small parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
     /// The order `n`; at order zero there is no force, and `y_0 = cos(theta)`.
@@ -34,7 +36,10 @@ pub struct Step {
 impl Step {
     /// What drives `y_n` beside the secular term: `y_n'' + y_n`.
     pub fn right_side(&self) -> FourierSeries<Polynomials> {
-        self.displacement.derivative().derivative().sum(&self.displacement)
+        self.displacement
+            .derivative()
+            .derivative()
+            .sum(&self.displacement)
     }
 }
 
@@ -51,7 +56,8 @@ pub enum Condition {
     NoSine,
 }
 
-/// The secular sine of the next order set to zero, which fixes the `cos(theta)` part of `y_n` (`a0`, `B1`, `B2`, ...).
+/// The secular sine of the next order set to zero, which fixes the `cos(theta)` part of `y_n`
+/// (`a0`, `B1`, `B2`, ...).
 #[derive(Clone, Debug, PartialEq)]
 pub struct AmplitudeCondition {
     /// The coefficient of the secular `sin(theta)`, which must vanish.
@@ -145,16 +151,22 @@ impl Line {
         Self::equal([left.into(), right.into()])
     }
 
-    /// The line with every number of its formulas changed; an expression that has no value then stays as it is.
+    /// The line with every number of its formulas changed; an expression that has no value then
+    /// stays as it is.
     #[must_use]
     pub fn with_numbers(&self, change: &dyn Fn(&Rational) -> Rational) -> Self {
         Self {
             words: self.words.clone(),
-            equal: self.equal.iter().map(|formula| formula.with_numbers(change)).collect(),
+            equal: self
+                .equal
+                .iter()
+                .map(|formula| formula.with_numbers(change))
+                .collect(),
         }
     }
 
-    /// Returns the line with this name of the phase in its Fourier series, and in its words, where `θ` stands for it.
+    /// Returns the line with this name of the phase in its Fourier series, and in its words, where
+    /// `θ` stands for it.
     pub(crate) fn with_phase(mut self, name: Symbol) -> Self {
         self.words = self.words.replace('θ', name.name());
         for formula in &mut self.equal {
@@ -181,7 +193,11 @@ impl Line {
 
 impl Formula {
     fn with_numbers(&self, change: &dyn Fn(&Rational) -> Rational) -> Self {
-        let changed = |expression: &Expr| expression.with_numbers(change).unwrap_or_else(|_| expression.clone());
+        let changed = |expression: &Expr| {
+            expression
+                .with_numbers(change)
+                .unwrap_or_else(|_| expression.clone())
+        };
         match self {
             Self::Expression(expression) => Self::Expression(changed(expression)),
             Self::Waves { series, phase } => Self::Waves {
@@ -221,7 +237,9 @@ impl Formula {
     pub fn symbols(&self) -> BTreeSet<Symbol> {
         match self {
             Self::Expression(expression) => expression.symbols(),
-            Self::Waves { series, .. } => series.numerators().flat_map(Polynomial::symbols).collect(),
+            Self::Waves { series, .. } => {
+                series.numerators().flat_map(Polynomial::symbols).collect()
+            }
             Self::Oscillator { of, square } => square.symbols().into_iter().chain([*of]).collect(),
             Self::AtZero { of, .. } => [*of].into(),
             Self::Integral {
@@ -234,8 +252,14 @@ impl Formula {
                 let ends = [factor, from, to].into_iter().flat_map(Expr::symbols);
                 ends.chain(integrand.symbols()).chain([*variable]).collect()
             }
-            Self::OverRoot(numerator, inside) => numerator.symbols().into_iter().chain(inside.symbols()).collect(),
-            Self::Slope { factor, of, by } => factor.symbols().into_iter().chain([*of, *by]).collect(),
+            Self::OverRoot(numerator, inside) => numerator
+                .symbols()
+                .into_iter()
+                .chain(inside.symbols())
+                .collect(),
+            Self::Slope { factor, of, by } => {
+                factor.symbols().into_iter().chain([*of, *by]).collect()
+            }
         }
     }
 }
@@ -316,7 +340,9 @@ impl fmt::Display for Formula {
                 let linear = square * &Expr::from(*of);
                 write!(formatter, "{of}'' + {linear}")
             }
-            Self::AtZero { of, derivatives } => write!(formatter, "{of}{}(0)", "'".repeat(*derivatives)),
+            Self::AtZero { of, derivatives } => {
+                write!(formatter, "{of}{}(0)", "'".repeat(*derivatives))
+            }
             Self::Integral {
                 factor,
                 from,
@@ -324,11 +350,12 @@ impl fmt::Display for Formula {
                 integrand,
                 variable,
             } => {
-                let end =
-                    |end: &Expr| match end.symbols().is_empty() && end.terms().len() < 2 || end.as_symbol().is_some() {
-                        true => end.to_string(),
-                        false => format!("({end})"),
-                    };
+                let end = |end: &Expr| match end.symbols().is_empty() && end.terms().len() < 2
+                    || end.as_symbol().is_some()
+                {
+                    true => end.to_string(),
+                    false => format!("({end})"),
+                };
                 let inside = match integrand.as_ref() {
                     Self::Expression(sum) if sum.terms().len() > 1 => format!("({})", Inside(sum)),
                     other => other.to_string(),
@@ -344,7 +371,9 @@ impl fmt::Display for Formula {
             Self::OverRoot(numerator, inside) => {
                 let numerator = bracketed(numerator);
                 match inside.as_ref() {
-                    Self::Expression(inside) => write!(formatter, "{numerator}/sqrt({})", Inside(inside)),
+                    Self::Expression(inside) => {
+                        write!(formatter, "{numerator}/sqrt({})", Inside(inside))
+                    }
                     inside => write!(formatter, "{numerator}/sqrt({inside})"),
                 }
             }

@@ -1,20 +1,24 @@
-//! Where a motion swings about: the stable equilibrium nearest to `x = 0`, or the one asked for, and the equation seen from
-//! there.
+//! Where a motion swings about: the stable equilibrium nearest to `x = 0`, or the one asked for,
+//! and the equation seen from there.
 //!
-//! In comes an [`Oscillator`], with or without an equilibrium asked for; out goes a [`Centred`]: the position, the equation about
-//! it, and what its symbols stand for; or an [`OscillatorError`] that names the stable equilibria there are.
+//! In comes an [`Oscillator`], with or without an equilibrium asked for; out goes a [`Centred`]:
+//! the position, the equation about it, and what its symbols stand for; or an [`OscillatorError`]
+//! that names the stable equilibria there are.
 //!
-//! `f(x_e) = 0`, stable where the lowest term of the force about `x_e` is odd and pulls back; where there is no Taylor
-//! series, where the force changes its sign from negative to positive. A force may also be infinite at `x = 0`: with
-//! `f ~ k sgn(x)|x|^p` there, `k > 0`, the potential is finite for `p > -1` and the motion swings through; `p = -1` is the limit of
-//! these, `V = k log|x|`, in which the period stays finite while the speed at `x = 0` does not (R. E. Mickens, *Truly Nonlinear
-//! Oscillations*, World Scientific 2010, section 2.3.3). A motion that is pulled faster than that falls in.
+//! `f(x_e) = 0`, stable where the lowest term of the force about `x_e` is odd and pulls back; where
+//! there is no Taylor series, where the force changes its sign from negative to positive. A force
+//! may also be infinite at `x = 0`: with `f ~ k sgn(x)|x|^p` there, `k > 0`, the potential is
+//! finite for `p > -1` and the motion swings through; `p = -1` is the limit of these,
+//! `V = k log|x|`, in which the period stays finite while the speed at `x = 0` does not (R. E.
+//! Mickens, *Truly Nonlinear Oscillations*, World Scientific 2010, section 2.3.3). A motion that is
+//! pulled faster than that falls in.
 //!
-//! An unstable equilibrium is answered for only where it is asked for, and where motions run through it: those of an odd force over
-//! the wells on both sides (`crate::conservative::passage`).
+//! An unstable equilibrium is answered for only where it is asked for, and where motions run
+//! through it: those of an odd force over the wells on both sides (`crate::conservative::passage`).
 //!
-//! The force is moved exactly: `f(x_e + x) - f(x_e)`. A fraction or a multiple of pi is put in; any other equilibrium enters as
-//! a symbol of its own, whose value is a definition of the answer. Only a polynomial asked for has numbers for coefficients.
+//! The force is moved exactly: `f(x_e + x) - f(x_e)`. A fraction or a multiple of pi is put in; any
+//! other equilibrium enters as a symbol of its own, whose value is a definition of the answer. Only
+//! a polynomial asked for has numbers for coefficients.
 
 mod force;
 mod inverse;
@@ -46,7 +50,8 @@ use shift::{moved, value_at};
 pub struct Centred {
     /// The equation in `x - position`.
     pub oscillator: Oscillator,
-    /// The equilibrium in numbers and parameters; seventeen digits where it has no closed form here.
+    /// The equilibrium in numbers and parameters; seventeen digits where it has no closed form
+    /// here.
     pub position: Expr,
     /// The same with the symbol of `definition` in it, where there is one.
     pub written: Expr,
@@ -54,11 +59,14 @@ pub struct Centred {
     pub definition: Option<Definition>,
     /// Whether the coefficients of the force are rounded.
     pub numerical: bool,
-    /// The sides of corners at rest without which there would be a force there: a barrier `H(x - xc)` is away for `xc > 0`.
+    /// The sides of corners at rest without which there would be a force there: a barrier
+    /// `H(x - xc)` is away for `xc > 0`.
     pub sides: Vec<CornerSide>,
-    /// Whether the force pulls towards it as `1/x` does: the potential there is minus infinity, the speed of every motion infinite.
+    /// Whether the force pulls towards it as `1/x` does: the potential there is minus infinity, the
+    /// speed of every motion infinite.
     pub endless: bool,
-    /// The motions through it over the wells on both sides, where it is no bottom but a hilltop between them.
+    /// The motions through it over the wells on both sides, where it is no bottom but a hilltop
+    /// between them.
     pub cross_well: Option<CrossWell>,
 }
 
@@ -77,13 +85,14 @@ impl Centred {
     }
 }
 
-/// The oscillator about the equilibrium asked for (a stable one, or a hilltop of the potential that motions pass), else about the stable one
-/// nearest to zero that no pole hides; `degree` is that of a polynomial with rounded coefficients in place of the force, should the
-/// equilibrium be irrational.
+/// The oscillator about the equilibrium asked for (a stable one, or a hilltop of the potential that
+/// motions pass), else about the stable one nearest to zero that no pole hides; `degree` is that of
+/// a polynomial with rounded coefficients in place of the force, should the equilibrium be
+/// irrational.
 ///
 /// # Errors
-/// An unstable `x = 0`, or an equilibrium asked for that is none (the stable ones are named); no equilibrium, or one that
-/// has no closed form in the parameters.
+/// An unstable `x = 0`, or an equilibrium asked for that is none (the stable ones are named); no
+/// equilibrium, or one that has no closed form in the parameters.
 pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, OscillatorError> {
     let t = Symbol::new("t");
     if !oscillator.force.contains(t) {
@@ -93,7 +102,11 @@ pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, 
         return Ok(Centred::at_origin(oscillator));
     };
     // What drives the motion does not decide where it swings.
-    let (driving, quiet): (Vec<Expr>, Vec<Expr>) = expanded.terms().iter().cloned().partition(|term| term.contains(t));
+    let (driving, quiet): (Vec<Expr>, Vec<Expr>) = expanded
+        .terms()
+        .iter()
+        .cloned()
+        .partition(|term| term.contains(t));
     let mut free = oscillator.clone();
     free.force = Expr::sum(quiet);
     if !free.force.contains(oscillator.coordinate) {
@@ -115,7 +128,10 @@ pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, 
 fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, OscillatorError> {
     let position = oscillator.coordinate;
     // Where the force has no value at rest the methods refuse it.
-    let Ok(still) = oscillator.force.substitute(oscillator.velocity(), &Expr::zero()) else {
+    let Ok(still) = oscillator
+        .force
+        .substitute(oscillator.velocity(), &Expr::zero())
+    else {
         return Ok(Centred::at_origin(oscillator));
     };
     if let Some(asked) = &oscillator.about {
@@ -129,11 +145,14 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
     };
     let rests = match &at_zero {
         Ok(force) => force.is_zero(),
-        Err(_) => force.vanishes_towards_zero() || matches!(pull, Some(Pull::Passed | Pull::Inverse)),
+        Err(_) => {
+            force.vanishes_towards_zero() || matches!(pull, Some(Pull::Passed | Pull::Inverse))
+        }
     };
     if rests {
         let stable = force.is_stable_at_zero();
-        // Letters are given the benefit of the doubt, but a root that has no value is no matter of theirs.
+        // Letters are given the benefit of the doubt, but a root that has no value is no matter of
+        // theirs.
         if (!stable || !force.is_numerical())
             && let Some(error) = one_sided::refusal(oscillator, &still)
             && force.stable_equilibria().positions.is_empty()
@@ -165,11 +184,16 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
     };
     if force.is_numerical() {
         let mut stable = force.stable();
-        // Where it is infinite it is none, whatever an expression with a sign in it is worth at zero itself.
+        // Where it is infinite it is none, whatever an expression with a sign in it is worth at
+        // zero itself.
         stable.retain(|found| pull.is_none() || found.position.abs() > 1e-100);
         let nearest = stable.iter().find(|found| found.reachable);
         return match (nearest, stable.is_empty()) {
-            (Some(nearest), _) => seen_from(oscillator, &force.exact_or_rounded(nearest.position), degree),
+            (Some(nearest), _) => seen_from(
+                oscillator,
+                &force.exact_or_rounded(nearest.position),
+                degree,
+            ),
             (None, true) => Err(no_equilibrium()),
             (None, false) => Err(OscillatorError::BeyondPole {
                 force: force.at_rest(&at_zero),
@@ -189,11 +213,14 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
     }
     match force.stable_closed_form() {
         Some(found) => seen_from(oscillator, &found, degree),
-        None => Err(OscillatorError::SymbolicEquilibrium(force.at_rest(&at_zero))),
+        None => Err(OscillatorError::SymbolicEquilibrium(
+            force.at_rest(&at_zero),
+        )),
     }
 }
 
-/// The oscillator with the numbers given for its parameters, where the equilibrium in symbols is not that of these numbers.
+/// The oscillator with the numbers given for its parameters, where the equilibrium in symbols is
+/// not that of these numbers.
 ///
 /// # Errors
 /// With these numbers `x = 0`, or the equilibrium asked for, is not stable, or there is none.
@@ -216,11 +243,17 @@ pub fn with_numbers_where_needed(
         return Ok(None);
     }
     let in_symbols = match centred(oscillator, None) {
-        Err(OscillatorError::SymbolicEquilibrium(_) | OscillatorError::NoSuchEquilibrium { .. }) => None,
+        Err(
+            OscillatorError::SymbolicEquilibrium(_) | OscillatorError::NoSuchEquilibrium { .. },
+        ) => None,
         Err(error) => return Err(error),
         Ok(centred) => Some(centred),
     };
-    if !oscillator.parameters.iter().all(|name| numbers.contains_key(name)) {
+    if !oscillator
+        .parameters
+        .iter()
+        .all(|name| numbers.contains_key(name))
+    {
         return Ok(None);
     }
     let numerical = oscillator.with_values(numbers)?;
@@ -229,7 +262,8 @@ pub fn with_numbers_where_needed(
         position.evaluate(&BTreeMap::new()).ok()
     };
     let in_numbers = centred(&numerical, None)?;
-    let hilltop = |centred: &Centred| centred.cross_well.is_some() == in_numbers.cross_well.is_some();
+    let hilltop =
+        |centred: &Centred| centred.cross_well.is_some() == in_numbers.cross_well.is_some();
     // A corner may be on its other side with these numbers.
     let beside = |centred: &Centred| {
         let Ok((_, taken)) = near_rest(&centred.oscillator.force, oscillator.coordinate) else {
@@ -237,19 +271,28 @@ pub fn with_numbers_where_needed(
         };
         centred.sides.iter().chain(&taken).all(|side| {
             let at_numbers = side.positive.substitute_all(numbers);
-            let value = at_numbers.map(|positive| positive.evaluate(&BTreeMap::new()).unwrap_or(f64::NAN));
+            let value =
+                at_numbers.map(|positive| positive.evaluate(&BTreeMap::new()).unwrap_or(f64::NAN));
             value.is_ok_and(|value| value > 0.0)
         })
     };
-    let same = in_symbols.filter(beside).filter(hilltop).is_some_and(|in_symbols| {
-        let (symbolic, number) = (place(&in_symbols), place(&in_numbers));
-        matches!((symbolic, number), (Some(a), Some(b)) if (a - b).abs() <= 1e-9 * b.abs())
-    });
+    let same = in_symbols
+        .filter(beside)
+        .filter(hilltop)
+        .is_some_and(|in_symbols| {
+            let (symbolic, number) = (place(&in_symbols), place(&in_numbers));
+            matches!((symbolic, number), (Some(a), Some(b)) if (a - b).abs() <= 1e-9 * b.abs())
+        });
     Ok((!same).then_some(numerical))
 }
 
 /// The oscillator about the equilibrium that was asked for: it may be typed rounded.
-fn about(oscillator: &Oscillator, still: &Expr, asked: &Expr, degree: Option<u32>) -> Result<Centred, OscillatorError> {
+fn about(
+    oscillator: &Oscillator,
+    still: &Expr,
+    asked: &Expr,
+    degree: Option<u32>,
+) -> Result<Centred, OscillatorError> {
     /// How far a number typed may be from the equilibrium it means, relatively.
     const ROUNDING: f64 = 1e-3;
     let force = Force::new(still, oscillator.coordinate);
@@ -280,14 +323,17 @@ fn about(oscillator: &Oscillator, still: &Expr, asked: &Expr, degree: Option<u32
         return seen_from(oscillator, &force.exact_or_rounded(found.position), degree);
     }
     // About a place known by its number alone no force is odd.
-    if let Some(Place::Exact(hilltop)) = nearest(false).map(|found| force.exact_or_rounded(found.position)) {
+    if let Some(Place::Exact(hilltop)) =
+        nearest(false).map(|found| force.exact_or_rounded(found.position))
+    {
         let found = about_zero_of_force(oscillator, still, &hilltop, degree)?;
         return found.ok_or_else(none_there);
     }
     Err(none_there())
 }
 
-/// The oscillator about a place where its force vanishes, if that is stable or motions pass it over the wells on both sides.
+/// The oscillator about a place where its force vanishes, if that is stable or motions pass it over
+/// the wells on both sides.
 fn about_zero_of_force(
     oscillator: &Oscillator,
     still: &Expr,
@@ -298,7 +344,8 @@ fn about_zero_of_force(
     let there = Force::new(&there, oscillator.coordinate);
     let stable = there.is_stable_at_zero();
     // Without a drive, which has been taken out of the force, and without what velocities add.
-    let conservative = oscillator.of_position_alone() && !oscillator.residual.contains(Symbol::new("t"));
+    let conservative =
+        oscillator.of_position_alone() && !oscillator.residual.contains(Symbol::new("t"));
     let cross_well = match conservative && !(stable && there.is_numerical()) {
         true => there.cross_well(place),
         false => None,
@@ -323,16 +370,20 @@ pub fn no_bottom(oscillator: &Oscillator) -> OscillatorError {
     }
 }
 
-/// That `x = 0` is unstable, where the stable equilibria have letters in them: what the numbers put in for these decide. `None` where there
-/// are none.
+/// That `x = 0` is unstable, where the stable equilibria have letters in them: what the numbers put
+/// in for these decide. `None` where there are none.
 pub(crate) fn stable_elsewhere(oscillator: &Oscillator) -> Option<OscillatorError> {
-    let still = oscillator.force.substitute(oscillator.velocity(), &Expr::zero()).ok()?;
+    let still = oscillator
+        .force
+        .substitute(oscillator.velocity(), &Expr::zero())
+        .ok()?;
     if still.contains(Symbol::new("t")) {
         return None;
     }
     let force = Force::new(&still, oscillator.coordinate);
     let found = force.stable_equilibria();
-    (!force.is_numerical() && !found.positions.is_empty()).then(|| force.unstable(oscillator.of_position_alone()))
+    (!force.is_numerical() && !found.positions.is_empty())
+        .then(|| force.unstable(oscillator.of_position_alone()))
 }
 
 /// Where an equilibrium is.
@@ -344,15 +395,24 @@ enum Place {
     Rounded(f64),
 }
 
-/// The sides of corners on which there is no force at rest, where letters decide them; nothing where there is one all the same.
-fn rests_beside_corners(still: &Expr, coordinate: Symbol) -> Result<Option<Vec<CornerSide>>, OscillatorError> {
+/// The sides of corners on which there is no force at rest, where letters decide them; nothing
+/// where there is one all the same.
+fn rests_beside_corners(
+    still: &Expr,
+    coordinate: Symbol,
+) -> Result<Option<Vec<CornerSide>>, OscillatorError> {
     let (beside, sides) = beside_corners(still, coordinate)?;
-    let rests = !sides.is_empty() && value_at(&beside, coordinate, &Expr::zero()).is_ok_and(|force| force.is_zero());
+    let rests = !sides.is_empty()
+        && value_at(&beside, coordinate, &Expr::zero()).is_ok_and(|force| force.is_zero());
     Ok(rests.then_some(sides))
 }
 
 /// The equation in the deviation from a place.
-fn seen_from(oscillator: &Oscillator, place: &Place, degree: Option<u32>) -> Result<Centred, OscillatorError> {
+fn seen_from(
+    oscillator: &Oscillator,
+    place: &Place,
+    degree: Option<u32>,
+) -> Result<Centred, OscillatorError> {
     let coordinate = oscillator.coordinate;
     let position = match place {
         Place::Exact(position) => position.clone(),
@@ -364,7 +424,8 @@ fn seen_from(oscillator: &Oscillator, place: &Place, degree: Option<u32>) -> Res
         written: position.clone(),
         ..Centred::at_origin(oscillator)
     };
-    let simple = matches!(place, Place::Exact(_)) && position.to_polynomial(&mut |_| None)?.is_some();
+    let simple =
+        matches!(place, Place::Exact(_)) && position.to_polynomial(&mut |_| None)?.is_some();
     if simple {
         centred.oscillator.force = moved(&oscillator.force, coordinate, &position)?;
         return Ok(centred);
@@ -376,12 +437,13 @@ fn seen_from(oscillator: &Oscillator, place: &Place, degree: Option<u32>) -> Res
         return Ok(centred);
     }
     if number == Some(0.0) {
-        let at_rest =
-            value_at(&oscillator.force, coordinate, &Expr::zero())?.substitute(oscillator.velocity(), &Expr::zero())?;
+        let at_rest = value_at(&oscillator.force, coordinate, &Expr::zero())?
+            .substitute(oscillator.velocity(), &Expr::zero())?;
         centred.oscillator.force = &oscillator.force - &at_rest;
         return Ok(centred);
     }
-    // What stands for the equilibrium is positive wherever that is known, as edges of barriers are taken to be.
+    // What stands for the equilibrium is positive wherever that is known, as edges of barriers are
+    // taken to be.
     let negative = number.is_some_and(|number| number < 0.0);
     let symbol = fresh(&format!("{coordinate}_e"), &oscillator.names());
     let (written, meaning) = match negative {
@@ -401,25 +463,39 @@ fn seen_from(oscillator: &Oscillator, place: &Place, degree: Option<u32>) -> Res
     Ok(centred)
 }
 
-/// The force as a polynomial in coordinate and velocity with rounded coefficients: all of it where it is a polynomial, its
-/// Taylor polynomial of a degree otherwise.
-fn rounded_force(oscillator: &Oscillator, number: f64, degree: u32) -> Result<Expr, OscillatorError> {
+/// The force as a polynomial in coordinate and velocity with rounded coefficients: all of it where
+/// it is a polynomial, its Taylor polynomial of a degree otherwise.
+fn rounded_force(
+    oscillator: &Oscillator,
+    number: f64,
+    degree: u32,
+) -> Result<Expr, OscillatorError> {
     let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
     let centre = rounded_to(number, 17);
     let mut constants: BTreeMap<Symbol, Expr> = BTreeMap::new();
     let mut name = |constant: &Expr| {
-        if constant.contains(position) || constant.contains(velocity) || constant.contains(Symbol::new("t")) {
+        if constant.contains(position)
+            || constant.contains(velocity)
+            || constant.contains(Symbol::new("t"))
+        {
             return None;
         }
         let symbol = Symbol::new(&format!("constant {constant}"));
         constants.insert(symbol, constant.clone());
         Some(symbol)
     };
-    let moved = oscillator
-        .force
-        .substitute(position, &(Expr::from(position) + Expr::number(centre.clone())))?;
+    let moved = oscillator.force.substitute(
+        position,
+        &(Expr::from(position) + Expr::number(centre.clone())),
+    )?;
     let polynomial = match moved.to_polynomial(&mut name)? {
-        Some(polynomial) if polynomial.exponent_range(position).is_none_or(|range| range.0 >= 0) => polynomial,
+        Some(polynomial)
+            if polynomial
+                .exponent_range(position)
+                .is_none_or(|range| range.0 >= 0) =>
+        {
+            polynomial
+        }
         _ => {
             let point = [(position, centre), (velocity, Rational::zero())];
             let point = if oscillator.force.contains(velocity) {
@@ -432,7 +508,8 @@ fn rounded_force(oscillator: &Oscillator, number: f64, degree: u32) -> Result<Ex
             polynomial.ok_or_else(|| OscillatorError::NotPolynomial(sum.clone().into()))?
         }
     };
-    // Number and size of what was added up, by the powers of coordinate and velocity and what else stands in the term.
+    // Number and size of what was added up, by the powers of coordinate and velocity and what else
+    // stands in the term.
     let mut sums: BTreeMap<(i32, i32, Monomial), (f64, f64)> = BTreeMap::new();
     for (monomial, factor) in polynomial.terms() {
         let mut value = to_f64(factor);
@@ -444,12 +521,18 @@ fn rounded_force(oscillator: &Oscillator, number: f64, degree: u32) -> Result<Ex
             };
             match (number, constants.get(&symbol)) {
                 (Some(number), _) => value *= number.powi(exponent),
-                (None, Some(constant)) => return Err(OscillatorError::NotPolynomial(constant.clone().into())),
+                (None, Some(constant)) => {
+                    return Err(OscillatorError::NotPolynomial(constant.clone().into()));
+                }
                 (None, None) if symbol == position || symbol == velocity => {}
                 (None, None) => rest = rest.product(&Monomial::power_of(symbol, exponent)),
             }
         }
-        let powers = (monomial.exponent(position), monomial.exponent(velocity), rest);
+        let powers = (
+            monomial.exponent(position),
+            monomial.exponent(velocity),
+            rest,
+        );
         let entry = sums.entry(powers).or_insert((0.0, 0.0));
         *entry = (entry.0 + value, entry.1 + value.abs());
     }
@@ -459,16 +542,20 @@ fn rounded_force(oscillator: &Oscillator, number: f64, degree: u32) -> Result<Ex
         let (p, q, rest) = powers;
         // The equilibrium is rounded, and with it every coefficient in proportion to the next one.
         let next = coefficient(&(p + 1, *q, rest.clone()));
-        let rounding = 1e-14 * size + 4.0 * f64::EPSILON * number.abs() * f64::from(p + 1) * next.abs();
+        let rounding =
+            1e-14 * size + 4.0 * f64::EPSILON * number.abs() * f64::from(p + 1) * next.abs();
         if value.abs() <= rounding || (*p, *q) == (0, 0) {
             continue;
         }
         // The linear frequency is rounded instead of its square, so that it needs no symbol.
         let coefficient = match (p, q) {
-            (1, 0) if value > 0.0 && rest.factors().is_empty() => num_traits::pow(rounded(value.sqrt()), 2),
+            (1, 0) if value > 0.0 && rest.factors().is_empty() => {
+                num_traits::pow(rounded(value.sqrt()), 2)
+            }
             _ => rounded(value),
         };
-        let power = |symbol: Symbol, exponent: i32| Expr::from(symbol).integer_power(exponent.into());
+        let power =
+            |symbol: Symbol, exponent: i32| Expr::from(symbol).integer_power(exponent.into());
         let mut term = Expr::number(coefficient) * power(position, *p)? * power(velocity, *q)?;
         for &(symbol, exponent) in rest.factors() {
             term = term * power(symbol, exponent)?;
@@ -483,7 +570,9 @@ mod tests {
     use super::*;
 
     fn position(text: &str) -> Result<String, OscillatorError> {
-        Ok(centred(&Oscillator::parse(text)?, None)?.position.to_string())
+        Ok(centred(&Oscillator::parse(text)?, None)?
+            .position
+            .to_string())
     }
 
     fn force(text: &str) -> String {
@@ -508,13 +597,19 @@ mod tests {
         assert_eq!(force("x'' + cos(x)"), "sin(x)");
         assert_eq!(force("x'' - sin(x + pi/3)"), "sin(x)");
         assert_eq!(force("x'' + 2*cos(2*x)"), "2*sin(2*x)");
-        assert_eq!(force("x'' + sin(x) - 1/2"), "-1/2 + sqrt(3)*sin(x)/2 + cos(x)/2");
+        assert_eq!(
+            force("x'' + sin(x) - 1/2"),
+            "-1/2 + sqrt(3)*sin(x)/2 + cos(x)/2"
+        );
     }
 
     #[test]
     fn every_scale_has_its_equilibria() {
         assert_eq!(position("x'' + 1e12*x - 1e26*x^3").unwrap(), "0");
-        let small: Expr = position("x'' + 1e12*x - 1e26*x^2 - 1e-9").unwrap().parse().unwrap();
+        let small: Expr = position("x'' + 1e12*x - 1e26*x^2 - 1e-9")
+            .unwrap()
+            .parse()
+            .unwrap();
         assert!((small.evaluate(&BTreeMap::new()).unwrap() / 1.000_000_1e-21 - 1.0).abs() < 1e-13);
         for scale in ["1e-20", "1e-9", "1e9", "1e20"] {
             let text = format!("x'' + (x/{scale})^2 - 4");
@@ -564,14 +659,21 @@ mod tests {
 
     #[test]
     fn equilibria_beyond_a_pole_come_last() {
-        // x (1 - x)^2 = 1/4 has a root beyond x = 1 alone, the plates of a condenser having met; x (1 - x) = 1/5 before it.
+        // x (1 - x)^2 = 1/4 has a root beyond x = 1 alone, the plates of a condenser having met; x
+        // (1 - x) = 1/5 before it.
         let error = position("x'' + x - 1/(4*(1 - x)^2)").unwrap_err();
-        assert!(matches!(error, OscillatorError::BeyondPole { .. }), "{error}");
+        assert!(
+            matches!(error, OscillatorError::BeyondPole { .. }),
+            "{error}"
+        );
         assert!(
             matches!(position("x'' + x - 1/(9*(1 - x)^2)").unwrap().len(), 18..),
             "irrational"
         );
-        assert_eq!(position("x'' + x - 1/(5*(1 - x))").unwrap(), "2/(5 + sqrt(5))");
+        assert_eq!(
+            position("x'' + x - 1/(5*(1 - x))").unwrap(),
+            "2/(5 + sqrt(5))"
+        );
         assert_eq!(
             position("x'' + x - lambda/(1 - x)").unwrap(),
             "2*lambda/(1 + sqrt(1 - 4*lambda))"
@@ -582,7 +684,10 @@ mod tests {
     fn static_loads_in_symbols() {
         assert_eq!(position("x'' + x - k").unwrap(), "k");
         assert_eq!(position("x'' + k*(x - L) + b*(x - L)^3").unwrap(), "L");
-        assert_eq!(position("x'' + x + x^2 - g").unwrap(), "2*g/(1 + sqrt(1 + 4*g))");
+        assert_eq!(
+            position("x'' + x + x^2 - g").unwrap(),
+            "2*g/(1 + sqrt(1 + 4*g))"
+        );
         assert_eq!(position("x'' + sin(x) - T").unwrap(), "asin(T)");
         assert_eq!(position("x'' - sin(x) - T").unwrap(), "pi + asin(T)");
         assert_eq!(position("x'' + x^3 - g").unwrap(), "g^(1/3)");
@@ -592,11 +697,12 @@ mod tests {
         ));
     }
 
-    /// The plates of a condenser have two equilibria before they meet, and one that is none beyond: which of the roots of the cubic
-    /// that are depends on the values.
+    /// The plates of a condenser have two equilibria before they meet, and one that is none beyond:
+    /// which of the roots of the cubic that are depends on the values.
     #[test]
     fn a_root_beyond_a_pole_is_not_chosen() {
-        let values: BTreeMap<Symbol, f64> = [("k".into(), 2.0), ("m".into(), 0.1), ("L".into(), 1.0)].into();
+        let values: BTreeMap<Symbol, f64> =
+            [("k".into(), 2.0), ("m".into(), 0.1), ("L".into(), 1.0)].into();
         let found = centred(&Oscillator::parse("x'' + k*x - m/(L - x)^2").unwrap(), None).unwrap();
         let place = found.position.evaluate(&values).unwrap();
         assert!(
@@ -636,14 +742,19 @@ mod tests {
     #[test]
     fn an_equilibrium_may_be_chosen() {
         let about = |text: &str, place: &str| {
-            let oscillator = Oscillator::parse(text).unwrap().about(place.parse().unwrap());
+            let oscillator = Oscillator::parse(text)
+                .unwrap()
+                .about(place.parse().unwrap());
             centred(&oscillator, None).map(|centred| centred.position.to_string())
         };
         assert_eq!(about("x'' - x + x^3", "-1").unwrap(), "-1");
         assert_eq!(about("x'' + sin(x)", "2*pi").unwrap(), "2*pi");
         assert_eq!(about("x'' - x + k*x^3", "1/sqrt(k)").unwrap(), "1/sqrt(k)");
         assert_eq!(about("x'' - 2*x + x^3", "1.4142").unwrap(), "sqrt(2)");
-        assert_eq!(about("x'' - cos(x)*(1 - 2*sin(x))", "1.5708").unwrap(), "pi/2");
+        assert_eq!(
+            about("x'' - cos(x)*(1 - 2*sin(x))", "1.5708").unwrap(),
+            "pi/2"
+        );
         let none = [
             ("x'' - x + x^3", "0.5"),
             ("x'' + sin(x)", "pi"),
@@ -654,20 +765,33 @@ mod tests {
         ];
         for (text, place) in none {
             let error = about(text, place).unwrap_err();
-            assert!(matches!(error, OscillatorError::NoSuchEquilibrium { .. }), "{error}");
+            assert!(
+                matches!(error, OscillatorError::NoSuchEquilibrium { .. }),
+                "{error}"
+            );
         }
     }
 
     #[test]
     fn rounding_leaves_no_terms_behind() {
         // (x - sqrt(2)) + (x - sqrt(2))^3 + a load that shifts nothing: even coefficients are zero.
-        let oscillator = Oscillator::parse("x'' + sinh(x - 0.7390851332151607) + x - 0.7390851332151607").unwrap();
+        let oscillator =
+            Oscillator::parse("x'' + sinh(x - 0.7390851332151607) + x - 0.7390851332151607")
+                .unwrap();
         assert_eq!(
-            centred(&oscillator, Some(5)).unwrap().oscillator.force.to_string(),
+            centred(&oscillator, Some(5))
+                .unwrap()
+                .oscillator
+                .force
+                .to_string(),
             "x + sinh(x)"
         );
-        let oscillator = Oscillator::parse("x'' + exp(x - 1/7) - exp(1/7 - x) + x - 1/7 + 0*x").unwrap();
-        assert_eq!(position("x'' + exp(x - 1/7) - exp(1/7 - x)").unwrap(), "1/7");
+        let oscillator =
+            Oscillator::parse("x'' + exp(x - 1/7) - exp(1/7 - x) + x - 1/7 + 0*x").unwrap();
+        assert_eq!(
+            position("x'' + exp(x - 1/7) - exp(1/7 - x)").unwrap(),
+            "1/7"
+        );
         let centred = centred(&oscillator, Some(4)).unwrap();
         assert!(!centred.numerical);
     }

@@ -1,10 +1,11 @@
 //! One oscillator, `x'' + f(x, x', t) = 0`, and the formulas of its motion.
 //!
-//! In: an equation of motion. Out: a frequency law, a motion as a Fourier series, the derivation line by line; or a refusal that
-//! names the term and a way forward.
+//! In: an equation of motion. Out: a frequency law, a motion as a Fourier series, the derivation
+//! line by line; or a refusal that names the term and a way forward.
 //!
-//! Five names to know: [`oscillator::Oscillator`], the question; [`method::solve`] with [`method::Options`], one signature for all
-//! methods; [`solution::Solution`], the answer; [`method::motion::Motion`], the answer in numbers.
+//! Five names to know: [`oscillator::Oscillator`], the question; [`method::solve`] with
+//! [`method::Options`], one signature for all methods; [`solution::Solution`], the answer;
+//! [`method::motion::Motion`], the answer in numbers.
 
 #![warn(missing_docs)]
 

@@ -1,15 +1,17 @@
 //! The question: an equation of motion in normal form.
 //!
-//! In comes an equation as text or as [`Equation`]; out goes an [`Oscillator`], its force taken apart by what its terms do, and
-//! expanded about rest. What is no oscillator, or cannot be expanded, is an [`OscillatorError`] that names the term.
+//! In comes an equation as text or as [`Equation`]; out goes an [`Oscillator`], its force taken
+//! apart by what its terms do, and expanded about rest. What is no oscillator, or cannot be
+//! expanded, is an [`OscillatorError`] that names the term.
 //!
 //! ```text
 //! m(x) x'' + g(x, x', t) = 0   ->   x'' + f(x, x', t) = 0,   f = g / m
 //! f = restoring(x) + inertia(x, x' even) + damping(x, x' odd) + forcing(x, t)
 //! ```
 //!
-//! and, for perturbation methods, the force as a sum of terms `delta^order * coefficient * x^p x'^q` beside the linear
-//! `omega0^2 x`, where `delta` is a parameter of the equation or the amplitude itself.
+//! and, for perturbation methods, the force as a sum of terms
+//! `delta^order * coefficient * x^p x'^q` beside the linear `omega0^2 x`, where `delta` is a
+//! parameter of the equation or the amplitude itself.
 
 pub(crate) mod corner;
 
@@ -21,7 +23,8 @@ use num_traits::Zero;
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Rational};
 use crate::expr::{
-    Equation, Expr, ExprError, Function, NAMES_OF_ANSWERS, ParseError, Quotation, Typed, parse_equation,
+    Equation, Expr, ExprError, Function, NAMES_OF_ANSWERS, ParseError, Quotation, Typed,
+    parse_equation,
 };
 use crate::series::taylor::{TaylorError, taylor};
 use crate::solution::note::Position;
@@ -41,7 +44,8 @@ pub struct Oscillator {
     pub force: Expr,
     /// The names that are neither the coordinate, its derivatives nor time, in alphabetical order.
     pub parameters: Vec<Symbol>,
-    /// The equilibrium about which the motion swings; the stable one nearest to zero where none is asked for.
+    /// The equilibrium about which the motion swings; the stable one nearest to zero where none is
+    /// asked for.
     pub about: Option<Expr>,
     /// The terms of the equation as they were typed, for messages.
     pub typed: Typed,
@@ -52,7 +56,8 @@ pub struct Oscillator {
 pub struct Parts {
     /// Terms in the coordinate alone.
     pub restoring: Expr,
-    /// Terms even in the velocity: they come from a mass that depends on position and lose no energy.
+    /// Terms even in the velocity: they come from a mass that depends on position and lose no
+    /// energy.
     pub inertia: Expr,
     /// Terms odd in the velocity.
     pub damping: Expr,
@@ -107,7 +112,9 @@ pub enum OscillatorError {
     #[error("the equation has no `{0}''`: an oscillator needs an acceleration")]
     NoAcceleration(Symbol),
     /// The second derivative does not enter linearly.
-    #[error("the acceleration enters as `{0}`, which is not linear in it: solve the equation for x'' first")]
+    #[error(
+        "the acceleration enters as `{0}`, which is not linear in it: solve the equation for x'' first"
+    )]
     NonlinearAcceleration(String),
     /// The coefficient of the acceleration vanishes at the equilibrium.
     #[error(
@@ -160,7 +167,8 @@ pub enum OscillatorError {
         /// Whether motions run through it, over the wells on both sides.
         passed: bool,
     },
-    /// A root that is real on one side of the equilibrium alone, so that nothing pulls back from the other.
+    /// A root that is real on one side of the equilibrium alone, so that nothing pulls back from
+    /// the other.
     #[error(
         "no motion swings about {coordinate} = 0: for {coordinate} {side} 0 there is no force, because `{term}` has no real value there"
     )]
@@ -187,7 +195,9 @@ pub enum OscillatorError {
         stable: Equilibria,
     },
     /// No linear restoring force.
-    #[error("the linear restoring force is `{0}`: an expansion needs omega0^2 * x with omega0^2 > 0")]
+    #[error(
+        "the linear restoring force is `{0}`: an expansion needs omega0^2 * x with omega0^2 > 0"
+    )]
     NoRestoringForce(Expr),
     /// A term that does not vanish with the small parameter.
     #[error("the term `{term}` does not vanish with the small parameter `{small}`")]
@@ -261,7 +271,10 @@ impl OscillatorError {
     pub fn help(&self) -> Option<Advice> {
         let either = |words: &str, [first, second]: [Method; 2]| {
             let first = Advice::words(words).choose(Setting::Method(first));
-            first.then("` or `").choose(Setting::Method(second)).then("`")
+            first
+                .then("` or `")
+                .choose(Setting::Method(second))
+                .then("`")
         };
         Some(match self {
             Self::AmbiguousSmallParameter(candidates) => Advice::words("choose one with `")
@@ -273,19 +286,31 @@ impl OscillatorError {
             Self::NotPolynomial(term) | Self::Taylor(TaylorError::NotAnalytic { term, .. })
                 if term.expression().contains(Symbol::new("t")) =>
             {
-                Advice::words("in numbers `lindstedt response` finds the steady states of a drive that repeats itself")
+                Advice::words(
+                    "in numbers `lindstedt response` finds the steady states of a drive that repeats itself",
+                )
             }
             Self::NotPolynomial(term) | Self::Taylor(TaylorError::NotAnalytic { term, .. })
-                if term.expression().symbols().iter().all(|symbol| symbol.primes() == 0) =>
+                if term
+                    .expression()
+                    .symbols()
+                    .iter()
+                    .all(|symbol| symbol.primes() == 0) =>
             {
                 let by_energy = [Method::Hamiltonian, Method::HarmonicBalance];
                 match self {
                     Self::NotPolynomial(_) => {
                         let small = Setting::Small(AmplitudeConvention::Initial.symbol());
-                        let smooth = Advice::words("where it is smooth, expand it in the amplitude: `").choose(small);
+                        let smooth =
+                            Advice::words("where it is smooth, expand it in the amplitude: `")
+                                .choose(small);
                         let as_it_is = smooth.then("`; or take the force as it is: `");
                         let [first, second] = by_energy.map(Setting::Method);
-                        as_it_is.choose(first).then("` or `").choose(second).then("`")
+                        as_it_is
+                            .choose(first)
+                            .then("` or `")
+                            .choose(second)
+                            .then("`")
                     }
                     _ => either("take the force as it is: `", by_energy),
                 }
@@ -305,7 +330,12 @@ impl OscillatorError {
             Self::SymbolicEquilibrium(_) => {
                 Advice::words("give numbers for the parameters, or measure x from the equilibrium")
             }
-            Self::Unstable { coordinate, stable, .. } | Self::BeyondPole { coordinate, stable, .. } => {
+            Self::Unstable {
+                coordinate, stable, ..
+            }
+            | Self::BeyondPole {
+                coordinate, stable, ..
+            } => {
                 let positions = &stable.positions;
                 let positive = positions.iter().find(|position| !position.is_negative());
                 let setting = Setting::About {
@@ -375,10 +405,12 @@ impl Oscillator {
                 slope.is_ok_and(|slope| slope.contains(acceleration))
             });
             let numbers: Vec<usize> = fast.map(|(number, _)| number).collect();
-            return Err(OscillatorError::NonlinearAcceleration(match numbers.is_empty() {
-                true => residual.to_string(),
-                false => equation.typed.quote(&numbers),
-            }));
+            return Err(OscillatorError::NonlinearAcceleration(
+                match numbers.is_empty() {
+                    true => residual.to_string(),
+                    false => equation.typed.quote(&numbers),
+                },
+            ));
         }
         let rest = residual.substitute(acceleration, &Expr::zero())?;
         let force = Expr::divide(&rest, &mass)?;
@@ -429,14 +461,18 @@ impl Oscillator {
             Some(place) => Some(place.substitute_all(values)?),
             None => None,
         };
-        oscillator.parameters.retain(|name| !values.contains_key(name));
+        oscillator
+            .parameters
+            .retain(|name| !values.contains_key(name));
         Ok(oscillator)
     }
 
-    /// Returns the equation with other names for the parameters that bear the name of something in an answer, the amplitudes `A` and `a`
-    /// or the frequency `omega`, and for each of them the name that was typed and the one that is written.
+    /// Returns the equation with other names for the parameters that bear the name of something in
+    /// an answer, the amplitudes `A` and `a` or the frequency `omega`, and for each of them the
+    /// name that was typed and the one that is written.
     ///
-    /// The `omega` of a drive becomes `Omega`, that of a linear force `omega0`, all others get an index.
+    /// The `omega` of a drive becomes `Omega`, that of a linear force `omega0`, all others get an
+    /// index.
     ///
     /// # Errors
     /// An expression beyond all limits.
@@ -450,7 +486,9 @@ impl Oscillator {
     /// assert_eq!(renamed, [("A".into(), "A1".into()), ("omega".into(), "omega0".into())]);
     /// # Ok::<(), lindstedt::oscillator::OscillatorError>(())
     /// ```
-    pub fn with_names_of_answers_free(&self) -> Result<(Self, Vec<(Symbol, Symbol)>), OscillatorError> {
+    pub fn with_names_of_answers_free(
+        &self,
+    ) -> Result<(Self, Vec<(Symbol, Symbol)>), OscillatorError> {
         let mut taken = self.names();
         let driven = self.force.contains(Symbol::new("t"));
         let slope = self.force.differentiate(self.coordinate)?;
@@ -470,7 +508,9 @@ impl Oscillator {
             taken.push(written);
             renamed.push((*name, written));
         }
-        let values = renamed.iter().map(|(typed, written)| (*typed, Expr::from(*written)));
+        let values = renamed
+            .iter()
+            .map(|(typed, written)| (*typed, Expr::from(*written)));
         let mut oscillator = self.with_values(&values.collect())?;
         oscillator
             .parameters
@@ -479,8 +519,9 @@ impl Oscillator {
         Ok((oscillator, renamed))
     }
 
-    /// Returns the equation with the names that an answer uses for its amplitudes and its frequency, `A`, `a` and `omega`, kept
-    /// [apart](Symbol::apart) from those of the answer: the answer then writes other [`Letters`].
+    /// Returns the equation with the names that an answer uses for its amplitudes and its
+    /// frequency, `A`, `a` and `omega`, kept [apart](Symbol::apart) from those of the answer: the
+    /// answer then writes other [`Letters`].
     ///
     /// # Errors
     /// An expression beyond all limits.
@@ -503,9 +544,13 @@ impl Oscillator {
             [name, velocity, velocity.derivative()]
         });
         let values = own.iter().copied().chain(states);
-        let values: BTreeMap<Symbol, Expr> = values.map(|name| (name, Expr::from(name.apart()))).collect();
+        let values: BTreeMap<Symbol, Expr> = values
+            .map(|name| (name, Expr::from(name.apart())))
+            .collect();
         let mut oscillator = self.with_values(&values)?;
-        oscillator.parameters.extend(own.into_iter().map(Symbol::apart));
+        oscillator
+            .parameters
+            .extend(own.into_iter().map(Symbol::apart));
         oscillator.parameters.sort_unstable();
         if let Some(name) = coordinate {
             oscillator.coordinate = name.apart();
@@ -513,8 +558,8 @@ impl Oscillator {
         Ok(oscillator)
     }
 
-    /// The letters of amplitude and frequency in what is derived from this equation: those in force on this thread, else the ones that
-    /// the equation leaves free.
+    /// The letters of amplitude and frequency in what is derived from this equation: those in force
+    /// on this thread, else the ones that the equation leaves free.
     pub fn letters(&self) -> Letters {
         Letters::current().unwrap_or_else(|| {
             let own: Vec<Symbol> = self.own_names().collect();
@@ -522,13 +567,15 @@ impl Oscillator {
         })
     }
 
-    /// The symbol that a person means by this name: one of the equation, or else the one that is written so in the answer.
+    /// The symbol that a person means by this name: one of the equation, or else the one that is
+    /// written so in the answer.
     pub fn meant(&self, name: Symbol) -> Symbol {
         let own: Vec<Symbol> = self.own_names().collect();
         self.letters().meant(name, &own)
     }
 
-    /// Parameters whose names look like something else, `e` or `sinx`, each with how that would be written.
+    /// Parameters whose names look like something else, `e` or `sinx`, each with how that would be
+    /// written.
     ///
     /// ```
     /// # use lindstedt_oscillator as lindstedt;
@@ -546,12 +593,15 @@ impl Oscillator {
             "i" | "j" => Some("there is no imaginary unit, for all quantities are real".to_owned()),
             text => (1..text.len()).find_map(|end| {
                 let (function, argument) = (text.get(..end)?, text.get(end..)?);
-                let known = Function::from_name(function).is_some() && names.contains(&Symbol::new(argument));
+                let known = Function::from_name(function).is_some()
+                    && names.contains(&Symbol::new(argument));
                 known.then(|| format!("the function is `{function}({argument})`"))
             }),
         };
         let parameters = self.parameters.iter();
-        parameters.filter_map(|name| Some((*name, meant(name)?))).collect()
+        parameters
+            .filter_map(|name| Some((*name, meant(name)?)))
+            .collect()
     }
 
     /// The velocity `x'`.
@@ -559,8 +609,8 @@ impl Oscillator {
         self.coordinate.derivative()
     }
 
-    /// The names that mean something in the equation: parameters, coordinate and time. What a method introduces is named by
-    /// [`fresh`] beside them.
+    /// The names that mean something in the equation: parameters, coordinate and time. What a
+    /// method introduces is named by [`fresh`] beside them.
     pub fn names(&self) -> Vec<Symbol> {
         let letters = self.letters();
         let letters = letters.unusual().map(|(_, written)| written);
@@ -572,12 +622,14 @@ impl Oscillator {
         self.parameters.iter().copied().chain(own)
     }
 
-    /// The name of the phase in what is derived from this equation: `theta`, unless the equation has that name.
+    /// The name of the phase in what is derived from this equation: `theta`, unless the equation
+    /// has that name.
     pub fn phase(&self) -> Symbol {
         phase_beside(&self.names())
     }
 
-    /// The name of the linear frequency in running text: `omega0`, unless the equation uses that for something else.
+    /// The name of the linear frequency in running text: `omega0`, unless the equation uses that
+    /// for something else.
     pub fn linear_frequency_name(&self, linear: &Polynomial) -> Symbol {
         let omega0 = Symbol::new("omega0");
         let square = Polynomial::term(Monomial::power_of(omega0, 2), num_traits::One::one());
@@ -599,12 +651,14 @@ impl Oscillator {
         }
     }
 
-    /// Whether the force is one of the position alone, so that its energy gives the period; not where it cannot be taken apart.
+    /// Whether the force is one of the position alone, so that its energy gives the period; not
+    /// where it cannot be taken apart.
     pub fn of_position_alone(&self) -> bool {
         self.parts().is_ok_and(|parts| parts.of_position_alone())
     }
 
-    /// The terms of the force sorted by kind. A term of several kinds, such as `x'*sin(t)`, counts as forcing.
+    /// The terms of the force sorted by kind. A term of several kinds, such as `x'*sin(t)`, counts
+    /// as forcing.
     ///
     /// # Errors
     /// The expanded force would be too long.
@@ -612,7 +666,8 @@ impl Oscillator {
         let velocity = self.velocity();
         let backwards = -&Expr::from(velocity);
         let expanded = self.force.expand()?;
-        let (mut restoring, mut inertia, mut damping, mut forcing) = (vec![], vec![], vec![], vec![]);
+        let (mut restoring, mut inertia, mut damping, mut forcing) =
+            (vec![], vec![], vec![], vec![]);
         for term in expanded.terms() {
             if term.contains(Symbol::new("t")) {
                 forcing.push(term.clone());
@@ -632,8 +687,8 @@ impl Oscillator {
         })
     }
 
-    /// The quantity in whose powers to expand: `asked`, else `eps`, else the one parameter whose vanishing leaves
-    /// `x'' + omega0^2 x`, else the amplitude.
+    /// The quantity in whose powers to expand: `asked`, else `eps`, else the one parameter whose
+    /// vanishing leaves `x'' + omega0^2 x`, else the amplitude.
     ///
     /// # Errors
     /// An unknown name, or several parameters that would do.
@@ -664,7 +719,10 @@ impl Oscillator {
         match candidates.as_slice() {
             [] => Ok(SmallParameter::Amplitude),
             [only] => Ok(SmallParameter::Parameter(*only)),
-            [first, others @ ..] => match others.iter().all(|other| self.stand_together(*first, *other)) {
+            [first, others @ ..] => match others
+                .iter()
+                .all(|other| self.stand_together(*first, *other))
+            {
                 // Either gives the same orders; a Greek letter is the likelier one.
                 true => Ok(SmallParameter::Parameter(
                     candidates
@@ -678,7 +736,8 @@ impl Oscillator {
         }
     }
 
-    /// Whether two parameters occur as factors alone, with the same powers in every term, as in `mu*N*sgn(x')`.
+    /// Whether two parameters occur as factors alone, with the same powers in every term, as in
+    /// `mu*N*sgn(x')`.
     fn stand_together(&self, one: Symbol, other: Symbol) -> bool {
         let power = |term: &Expr, name: Symbol| {
             let (_, factors) = term.factors();
@@ -692,8 +751,11 @@ impl Oscillator {
                 }
             }
         };
-        let alike = |term: &Expr| power(term, one).is_some_and(|own| Some(own) == power(term, other));
-        self.force.expand().is_ok_and(|force| force.terms().iter().all(alike))
+        let alike =
+            |term: &Expr| power(term, one).is_some_and(|own| Some(own) == power(term, other));
+        self.force
+            .expand()
+            .is_ok_and(|force| force.terms().iter().all(alike))
     }
 
     /// The degree of the force in the coordinate, where it is a polynomial in it.
@@ -709,15 +771,17 @@ impl Oscillator {
             return Ok(Some(degree));
         }
         let mut names = Names::new(self);
-        let polynomial = self.force.to_polynomial(&mut |constant| names.of(constant, &own))?;
+        let polynomial = self
+            .force
+            .to_polynomial(&mut |constant| names.of(constant, &own))?;
         let range = polynomial.and_then(|polynomial| polynomial.exponent_range(self.coordinate));
         Ok(range
             .filter(|range| range.0 >= 0)
             .and_then(|range| u32::try_from(range.1).ok()))
     }
 
-    /// Whether `parameter = 0` leaves `x'' + omega0^2 x = 0`, and the equation is not that already. What is left of a bead on a wire
-    /// that turns, `-Omega^2 x`, is no such thing.
+    /// Whether `parameter = 0` leaves `x'' + omega0^2 x = 0`, and the equation is not that already.
+    /// What is left of a bead on a wire that turns, `-Omega^2 x`, is no such thing.
     fn is_linear_without(&self, parameter: Symbol) -> bool {
         let Ok(rest) = self
             .force
@@ -726,7 +790,8 @@ impl Oscillator {
         else {
             return false;
         };
-        let linear = Expr::divide(&rest, &Expr::from(self.coordinate)).and_then(|quotient| quotient.expand());
+        let linear = Expr::divide(&rest, &Expr::from(self.coordinate))
+            .and_then(|quotient| quotient.expand());
         linear.is_ok_and(|quotient| {
             let own = [self.coordinate, self.velocity(), Symbol::new("t")];
             let repels = quotient.terms().len() == 1 && quotient.has_leading_minus();
@@ -738,14 +803,16 @@ impl Oscillator {
     }
 
     fn stiffness(&self) -> Expr {
-        let quotient = Expr::divide(&self.force, &Expr::from(self.coordinate)).and_then(|quotient| quotient.expand());
+        let quotient = Expr::divide(&self.force, &Expr::from(self.coordinate))
+            .and_then(|quotient| quotient.expand());
         quotient.unwrap_or_else(|_| self.force.clone())
     }
 
     /// The force up to `delta^order`, about the equilibrium `x = 0`.
     ///
     /// # Errors
-    /// A force at rest, a missing linear restoring force, or a term that is not small, not analytic or no polynomial.
+    /// A force at rest, a missing linear restoring force, or a term that is not small, not analytic
+    /// or no polynomial.
     ///
     /// ```
     /// # use lindstedt_oscillator as lindstedt;
@@ -757,7 +824,11 @@ impl Oscillator {
     /// assert_eq!(powers, [(2, 3), (4, 5)]); // -x^3/6 + x^5/120
     /// # Ok::<(), lindstedt::oscillator::OscillatorError>(())
     /// ```
-    pub fn expand(&self, small: SmallParameter, order: u32) -> Result<PerturbedForce, OscillatorError> {
+    pub fn expand(
+        &self,
+        small: SmallParameter,
+        order: u32,
+    ) -> Result<PerturbedForce, OscillatorError> {
         let force = self.expand_with_any_stiffness(small, order)?;
         if force.lacks_restoring_force() {
             let linear = &force.linear_in_full() * &Expr::from(self.coordinate);
@@ -817,7 +888,8 @@ impl Oscillator {
                 return Err(OscillatorError::NotPolynomial(part.clone().into()));
             };
             for (monomial, coefficient) in polynomial.terms() {
-                let named = || Expr::from(&Polynomial::term(monomial.clone(), coefficient.clone())).into();
+                let named =
+                    || Expr::from(&Polynomial::term(monomial.clone(), coefficient.clone())).into();
                 let exponent = |symbol| u32::try_from(monomial.exponent(symbol));
                 let (Ok(p), Ok(q)) = (exponent(position), exponent(velocity)) else {
                     return Err(OscillatorError::NotPolynomial(named()));
@@ -834,7 +906,10 @@ impl Oscillator {
                             SmallParameter::Parameter(name) => name.to_string(),
                             SmallParameter::Amplitude => AMPLITUDE.to_string(),
                         };
-                        return Err(OscillatorError::NotSmall { term: named(), small });
+                        return Err(OscillatorError::NotSmall {
+                            term: named(),
+                            small,
+                        });
                     }
                     (order, position, velocity) => terms.push(Term {
                         order,
@@ -866,8 +941,8 @@ fn merged(terms: Vec<Term>) -> Vec<Term> {
     merged
 }
 
-/// Whether a constant is zero however it is written, as `sin(c)/cos(c) - tan(c)` is: where no way to write it out says so, tried with
-/// numbers for its letters.
+/// Whether a constant is zero however it is written, as `sin(c)/cos(c) - tan(c)` is: where no way
+/// to write it out says so, tried with numbers for its letters.
 fn vanishes_identically(constant: &Expr) -> bool {
     if constant.is_zero() || constant.expand().is_ok_and(|constant| constant.is_zero()) {
         return true;
@@ -875,11 +950,16 @@ fn vanishes_identically(constant: &Expr) -> bool {
     let symbols = constant.symbols();
     let tried = [0.137, 0.731, 1.913].map(|scale| {
         let places = symbols.iter().zip(1_u32..);
-        let numbers: BTreeMap<Symbol, f64> = places.map(|(name, k)| (*name, scale / f64::from(k).sqrt())).collect();
+        let numbers: BTreeMap<Symbol, f64> = places
+            .map(|(name, k)| (*name, scale / f64::from(k).sqrt()))
+            .collect();
         constant.evaluate_rounded(&|name| Some((*numbers.get(&name)?, 0.0)))
     });
     // One try may be outside of where it has a value.
-    let known = tried.into_iter().flatten().filter(|(value, _)| value.is_finite());
+    let known = tried
+        .into_iter()
+        .flatten()
+        .filter(|(value, _)| value.is_finite());
     let known: Vec<bool> = known.map(|(value, error)| value.abs() <= error).collect();
     !symbols.is_empty() && known.len() > 1 && known.iter().all(|zero| *zero)
 }
@@ -906,7 +986,11 @@ impl Names {
 
     /// The symbol of `constant`, unless one of `variables` occurs in it.
     fn of(&mut self, constant: &Expr, variables: &[Symbol]) -> Option<Symbol> {
-        if variables.iter().any(|&variable| constant.contains(variable)) || constant.contains(Symbol::new("t")) {
+        if variables
+            .iter()
+            .any(|&variable| constant.contains(variable))
+            || constant.contains(Symbol::new("t"))
+        {
             return None;
         }
         if let Some(known) = self
@@ -927,8 +1011,8 @@ impl Names {
 }
 
 impl PerturbedForce {
-    /// The linear frequency as a single term: a fraction, a product of powers of parameters, or a symbol with its definition,
-    /// `omega0` where `names` leave it free.
+    /// The linear frequency as a single term: a fraction, a product of powers of parameters, or a
+    /// symbol with its definition, `omega0` where `names` leave it free.
     pub fn linear_frequency(&self, names: &[Symbol]) -> (Polynomial, Option<Definition>) {
         if let Some(root) = self.linear.single_term_root() {
             return (root, None);
@@ -943,15 +1027,16 @@ impl PerturbedForce {
         )
     }
 
-    /// Writes the terms in powers of the linear frequency where a parameter under its root is left in none of them: of
-    /// `omega0^2 = g/L` and `g*sin(x)/L` all that is left is `omega0^2 sin(x)`.
+    /// Writes the terms in powers of the linear frequency where a parameter under its root is left
+    /// in none of them: of `omega0^2 = g/L` and `g*sin(x)/L` all that is left is `omega0^2 sin(x)`.
     pub(crate) fn write_with_frequency(&mut self, names: &[Symbol]) {
         let (_, Some(root)) = self.linear_frequency(names) else {
             return;
         };
         for letter in self.letters_under_root() {
             let terms = self.terms.iter();
-            let written = terms.map(|term| self.with_frequency(&term.coefficient, letter, root.symbol));
+            let written =
+                terms.map(|term| self.with_frequency(&term.coefficient, letter, root.symbol));
             if let Some(written) = written.collect::<Option<Vec<Polynomial>>>() {
                 for (term, coefficient) in self.terms.iter_mut().zip(written) {
                     term.coefficient = coefficient;
@@ -965,35 +1050,56 @@ impl PerturbedForce {
     fn letters_under_root(&self) -> Vec<Symbol> {
         let product = self.linear.single_term();
         product.map_or_else(Vec::new, |(monomial, _)| {
-            monomial.factors().iter().map(|(symbol, _)| *symbol).collect()
+            monomial
+                .factors()
+                .iter()
+                .map(|(symbol, _)| *symbol)
+                .collect()
         })
     }
 
-    /// A coefficient that belongs to the force, written as its [terms](Self::write_with_frequency) are, where that can be done.
-    pub(crate) fn written_with_frequency(&self, coefficient: Polynomial, names: &[Symbol]) -> Polynomial {
+    /// A coefficient that belongs to the force, written as its [terms](Self::write_with_frequency)
+    /// are, where that can be done.
+    pub(crate) fn written_with_frequency(
+        &self,
+        coefficient: Polynomial,
+        names: &[Symbol],
+    ) -> Polynomial {
         let (_, Some(root)) = self.linear_frequency(names) else {
             return coefficient;
         };
         let mut letters = self.letters_under_root().into_iter();
-        let written = letters.find_map(|letter| self.with_frequency(&coefficient, letter, root.symbol));
+        let written =
+            letters.find_map(|letter| self.with_frequency(&coefficient, letter, root.symbol));
         written.unwrap_or(coefficient)
     }
 
-    /// Without a letter of the linear force, whose power says that of the force; `None` where another of its letters is there more often
-    /// than before.
-    fn with_frequency(&self, coefficient: &Polynomial, letter: Symbol, frequency: Symbol) -> Option<Polynomial> {
+    /// Without a letter of the linear force, whose power says that of the force; `None` where
+    /// another of its letters is there more often than before.
+    fn with_frequency(
+        &self,
+        coefficient: &Polynomial,
+        letter: Symbol,
+        frequency: Symbol,
+    ) -> Option<Polynomial> {
         let (linear, number) = self.linear.single_term()?;
         let unit = linear.exponent(letter);
         let mut written = Polynomial::zero();
         for (monomial, own) in coefficient.terms() {
             let power = monomial.exponent(letter) / unit;
             let rest = monomial.product(&linear.power(-power));
-            let more = |symbol: Symbol| rest.exponent(symbol).abs() > monomial.exponent(symbol).abs();
-            if rest.exponent(letter) != 0 || linear.factors().iter().any(|(symbol, _)| more(*symbol)) {
+            let more =
+                |symbol: Symbol| rest.exponent(symbol).abs() > monomial.exponent(symbol).abs();
+            if rest.exponent(letter) != 0
+                || linear.factors().iter().any(|(symbol, _)| more(*symbol))
+            {
                 return None;
             }
             let scale = num_traits::pow::Pow::pow(number, -power);
-            written.add_term(rest.product(&Monomial::power_of(frequency, 2 * power)), own * scale);
+            written.add_term(
+                rest.product(&Monomial::power_of(frequency, 2 * power)),
+                own * scale,
+            );
         }
         Some(written)
     }
@@ -1008,14 +1114,20 @@ impl PerturbedForce {
         linear.substitute_all(&meanings.collect()).unwrap_or(linear)
     }
 
-    /// Whether the linear force is known not to restore: nothing, a negative number, or a negative multiple of one product of
-    /// parameters, which are taken to be positive.
+    /// Whether the linear force is known not to restore: nothing, a negative number, or a negative
+    /// multiple of one product of parameters, which are taken to be positive.
     fn lacks_restoring_force(&self) -> bool {
         /// What a sum of constants has left of its terms where it is zero but for rounding.
         const ROUNDING: f64 = 1e-14;
         let named = |symbol: &Symbol| self.definitions.iter().any(|entry| entry.symbol == *symbol);
-        let parameters: Vec<Symbol> = self.linear.symbols().into_iter().filter(|name| !named(name)).collect();
-        if self.linear.is_zero() || (!parameters.is_empty() && self.linear.single_term().is_none()) {
+        let parameters: Vec<Symbol> = self
+            .linear
+            .symbols()
+            .into_iter()
+            .filter(|name| !named(name))
+            .collect();
+        if self.linear.is_zero() || (!parameters.is_empty() && self.linear.single_term().is_none())
+        {
             return self.linear.is_zero();
         }
         let full = self.linear_in_full();
@@ -1023,10 +1135,17 @@ impl PerturbedForce {
         let not_positive = |value: f64| {
             let numbers = parameters.iter().map(|name| (*name, value)).collect();
             let terms = full.terms().iter();
-            let size: f64 = terms.filter_map(|term| Some(term.evaluate(&numbers).ok()?.abs())).sum();
-            full.evaluate(&numbers).ok().map(|found| found <= ROUNDING * size)
+            let size: f64 = terms
+                .filter_map(|term| Some(term.evaluate(&numbers).ok()?.abs()))
+                .sum();
+            full.evaluate(&numbers)
+                .ok()
+                .map(|found| found <= ROUNDING * size)
         };
-        let known: Vec<bool> = [1.0, 0.1, 0.37, 2.3].into_iter().filter_map(not_positive).collect();
+        let known: Vec<bool> = [1.0, 0.1, 0.37, 2.3]
+            .into_iter()
+            .filter_map(not_positive)
+            .collect();
         !known.is_empty() && known.iter().all(|not| *not)
     }
 }

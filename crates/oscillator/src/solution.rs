@@ -1,10 +1,11 @@
 //! The answer: a frequency relation and a motion, with everything needed to use them rightly.
 //!
-//! In come the parts that a method found: a [`Law`], a displacement as a Fourier series, [`Note`]s, a derivation. Out go its
-//! values at numbers, its law in one line, its polynomials in the order in which people read them. Nothing here knows how a
-//! method works or how a format looks.
+//! In come the parts that a method found: a [`Law`], a displacement as a Fourier series, [`Note`]s,
+//! a derivation. Out go its values at numbers, its law in one line, its polynomials in the order in
+//! which people read them. Nothing here knows how a method works or how a format looks.
 //!
-//! A formula without its amplitude convention, order and validity is half a formula, so all of them travel together.
+//! A formula without its amplitude convention, order and validity is half a formula, so all of them
+//! travel together.
 
 mod advice;
 mod branch;
@@ -119,18 +120,24 @@ impl Definition {
     }
 }
 
-/// A constant; a fraction of many digits, which is a rounded number, as a decimal, and a root of rounded numbers with decimals under it.
+/// A constant; a fraction of many digits, which is a rounded number, as a decimal, and a root of
+/// rounded numbers with decimals under it.
 pub fn constant_in_words(value: &Expr) -> String {
     match long_fraction(value) {
         Some(number) => significant_fraction(number, 15),
-        None => value.with_number_under_root().as_ref().unwrap_or(value).to_string(),
+        None => value
+            .with_number_under_root()
+            .as_ref()
+            .unwrap_or(value)
+            .to_string(),
     }
 }
 
 /// A number with more signs than this must be a rounded one.
 const MANY: usize = 16;
 
-/// The number that a constant is, where it is a fraction of so many digits that it must be a rounded number.
+/// The number that a constant is, where it is a fraction of so many digits that it must be a
+/// rounded number.
 pub fn long_fraction(value: &Expr) -> Option<&Rational> {
     value
         .as_number()
@@ -140,7 +147,8 @@ pub fn long_fraction(value: &Expr) -> Option<&Rational> {
 /// The limit cycle that a solution describes, among those of its equation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LimitCycle {
-    /// The amplitude, in the convention of the solution; to leading order where the motion is left out.
+    /// The amplitude, in the convention of the solution; to leading order where the motion is left
+    /// out.
     pub amplitude: Polynomial,
     /// Which of the cycles it is, counted from one.
     pub number: usize,
@@ -155,8 +163,8 @@ pub struct LimitCycle {
 pub struct LeadingCycle {
     /// Its amplitude where the small parameter vanishes.
     pub amplitude: Expr,
-    /// Where this is positive the cycle attracts, and repels where it is negative; `None` at a multiple root of the equation
-    /// for the amplitude, which says neither.
+    /// Where this is positive the cycle attracts, and repels where it is negative; `None` at a
+    /// multiple root of the equation for the amplitude, which says neither.
     pub attracts_where: Option<Expr>,
 }
 
@@ -170,7 +178,11 @@ impl LeadingCycle {
                 Some(_) => "repels".to_owned(),
                 None => {
                     let negative = condition.has_leading_minus();
-                    let scale = if negative { -condition } else { condition.clone() };
+                    let scale = if negative {
+                        -condition
+                    } else {
+                        condition.clone()
+                    };
                     let (stable, unstable) = if negative { ('<', '>') } else { ('>', '<') };
                     format!("attracts for {scale} {stable} 0 and repels for {scale} {unstable} 0")
                 }
@@ -181,8 +193,9 @@ impl LeadingCycle {
 
 /// A closed-form approximation of a periodic motion.
 ///
-/// The motion is `x(t) = displacement(theta)`, `theta = omega t`; all polynomials are in the parameters of the equation, the
-/// amplitude symbol of the convention and the symbols of `definitions`.
+/// The motion is `x(t) = displacement(theta)`, `theta = omega t`; all polynomials are in the
+/// parameters of the equation, the amplitude symbol of the convention and the symbols of
+/// `definitions`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
     /// The equation as it was understood, `x'' + f = 0`.
@@ -193,7 +206,8 @@ pub struct Solution {
     pub order: u32,
     /// The degrees of an approximant.
     pub degrees: Option<Degrees>,
-    /// The parameter in which the expansion runs; the amplitude symbol where it runs in the amplitude.
+    /// The parameter in which the expansion runs; the amplitude symbol where it runs in the
+    /// amplitude.
     pub small_parameter: Symbol,
     /// What the amplitude symbol measures.
     pub amplitude: AmplitudeConvention,
@@ -207,7 +221,8 @@ pub struct Solution {
     pub law: Law,
     /// The motion, equilibrium included.
     pub displacement: FourierSeries<Polynomials>,
-    /// The motion from rest at `A` as an expression in `t`, equilibrium included, where it is known without a series.
+    /// The motion from rest at `A` as an expression in `t`, equilibrium included, where it is known
+    /// without a series.
     pub closed_motion: Option<Expr>,
     /// Self-excited oscillators: the cycle whose amplitude the equation itself determines.
     pub limit_cycle: Option<LimitCycle>,
@@ -215,7 +230,8 @@ pub struct Solution {
     pub modulation: Option<Modulation>,
     /// Driven motions: the frequency-response equation and what follows from it.
     pub response: Option<Response>,
-    /// Whether the coefficients are rounded to fifteen digits, because the equilibrium is no fraction.
+    /// Whether the coefficients are rounded to fifteen digits, because the equilibrium is no
+    /// fraction.
     pub numerical: bool,
     /// What is known of where the formula holds.
     pub validity: Vec<Note>,
@@ -228,12 +244,18 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// The value of a polynomial of this solution, with definitions worked out from the values of the parameters.
+    /// The value of a polynomial of this solution, with definitions worked out from the values of
+    /// the parameters.
     ///
     /// # Errors
     /// The first symbol without a value.
-    pub fn evaluate(&self, polynomial: &Polynomial, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Result<f64, Symbol> {
-        self.evaluate_with_size(polynomial, value_of).map(|(value, _)| value)
+    pub fn evaluate(
+        &self,
+        polynomial: &Polynomial,
+        value_of: &dyn Fn(Symbol) -> Option<f64>,
+    ) -> Result<f64, Symbol> {
+        self.evaluate_with_size(polynomial, value_of)
+            .map(|(value, _)| value)
     }
 
     /// The value, and the sum of the sizes of its terms.
@@ -242,13 +264,20 @@ impl Solution {
         polynomial: &Polynomial,
         value_of: &dyn Fn(Symbol) -> Option<f64>,
     ) -> Result<(f64, f64), Symbol> {
-        let values = match polynomial.symbols().iter().any(|symbol| self.defines(*symbol)) {
+        let values = match polynomial
+            .symbols()
+            .iter()
+            .any(|symbol| self.defines(*symbol))
+        {
             true => self.defined_values(value_of)?,
             false => vec![],
         };
         let pi = Symbol::new("pi");
         polynomial.evaluate_with_size(|symbol| {
-            let defined = values.iter().find(|(name, _)| *name == symbol).map(|(_, value)| *value);
+            let defined = values
+                .iter()
+                .find(|(name, _)| *name == symbol)
+                .map(|(_, value)| *value);
             defined
                 .or_else(|| value_of(symbol))
                 .or_else(|| (symbol == pi).then_some(std::f64::consts::PI))
@@ -259,7 +288,10 @@ impl Solution {
     ///
     /// # Errors
     /// The first symbol without a value.
-    pub fn defined_values(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Result<Vec<(Symbol, f64)>, Symbol> {
+    pub fn defined_values(
+        &self,
+        value_of: &dyn Fn(Symbol) -> Option<f64>,
+    ) -> Result<Vec<(Symbol, f64)>, Symbol> {
         let mut values: Vec<(Symbol, f64)> = Vec::new();
         // A definition may use those before it.
         for definition in &self.definitions {
@@ -272,12 +304,18 @@ impl Solution {
                 .symbols()
                 .into_iter()
                 .map(|symbol| {
-                    let defined = values.iter().find(|(name, _)| *name == symbol).map(|(_, value)| *value);
+                    let defined = values
+                        .iter()
+                        .find(|(name, _)| *name == symbol)
+                        .map(|(_, value)| *value);
                     let value = defined.or_else(|| value_of(symbol)).ok_or(symbol)?;
                     Ok((symbol, value))
                 })
                 .collect();
-            let value = definition.meaning.evaluate(&known?).map_err(|_| definition.symbol)?;
+            let value = definition
+                .meaning
+                .evaluate(&known?)
+                .map_err(|_| definition.symbol)?;
             values.push((definition.symbol, value));
         }
         Ok(values)
@@ -289,16 +327,23 @@ impl Solution {
         response.map(|response| &response.motion)
     }
 
-    /// The slow equations, where the motion is one whose amplitude changes; of a periodic motion none.
+    /// The slow equations, where the motion is one whose amplitude changes; of a periodic motion
+    /// none.
     pub fn slow(&self) -> Option<&Modulation> {
         let slow = self.modulation.as_ref();
-        let free = slow.filter(|modulation| !modulation.is_conservative() && modulation.release.is_some());
+        let free =
+            slow.filter(|modulation| !modulation.is_conservative() && modulation.release.is_some());
         free.filter(|_| self.limit_cycle.is_none())
     }
 
     /// The law that only numbers solve, in one line.
     pub fn by_numbers(&self) -> Option<String> {
-        let lines: Vec<String> = self.law.quadrature()?.iter().map(ToString::to_string).collect();
+        let lines: Vec<String> = self
+            .law
+            .quadrature()?
+            .iter()
+            .map(ToString::to_string)
+            .collect();
         Some(lines.join("; "))
     }
 
@@ -310,14 +355,19 @@ impl Solution {
     /// The small parameter, and those that are small together with it.
     pub fn small_parameters(&self) -> impl Iterator<Item = Symbol> + '_ {
         let of_cycle = self.limit_cycle.iter().flat_map(|cycle| &cycle.small_with);
-        let of_modulation = self.modulation.iter().flat_map(|modulation| &modulation.small_with);
+        let of_modulation = self
+            .modulation
+            .iter()
+            .flat_map(|modulation| &modulation.small_with);
         let others = of_cycle.chain(of_modulation.filter(|_| self.limit_cycle.is_none()));
         std::iter::once(self.small_parameter).chain(others.copied())
     }
 
     /// The power of the small parameters in a term.
     pub fn order_of(&self, monomial: &Monomial) -> i32 {
-        self.small_parameters().map(|name| monomial.exponent(name)).sum()
+        self.small_parameters()
+            .map(|name| monomial.exponent(name))
+            .sum()
     }
 
     /// The terms of a polynomial without small parameters.
@@ -326,13 +376,16 @@ impl Solution {
             .fold(polynomial.clone(), |rest, name| rest.truncated(name, 0))
     }
 
-    /// The names that mean something in this answer already: parameters, coordinate, definitions, `t`. What a report introduces is
-    /// named by [`fresh`] beside them.
+    /// The names that mean something in this answer already: parameters, coordinate, definitions,
+    /// `t`. What a report introduces is named by [`fresh`] beside them.
     pub fn names(&self) -> Vec<Symbol> {
         let defined = self.definitions.iter().map(|definition| definition.symbol);
         let letters = self.letters();
         let letters = letters.unusual().map(|(_, written)| written);
-        self.names_of_equation().chain(defined).chain(letters).collect()
+        self.names_of_equation()
+            .chain(defined)
+            .chain(letters)
+            .collect()
     }
 
     fn names_of_equation(&self) -> impl Iterator<Item = Symbol> {
@@ -340,8 +393,9 @@ impl Solution {
         self.parameters.iter().copied().chain(own)
     }
 
-    /// The letters of amplitude and frequency: those in force on this thread, else the ones that the equation leaves free. They are
-    /// how the symbols of this answer print while they are [in force](Letters::in_force).
+    /// The letters of amplitude and frequency: those in force on this thread, else the ones that
+    /// the equation leaves free. They are how the symbols of this answer print while they are
+    /// [in force](Letters::in_force).
     pub fn letters(&self) -> Letters {
         Letters::current().unwrap_or_else(|| {
             let own: Vec<Symbol> = self.names_of_equation().collect();
@@ -354,7 +408,8 @@ impl Solution {
         phase_beside(&self.names())
     }
 
-    /// The name of the linear frequency: `omega0`, unless the equation uses that for something else.
+    /// The name of the linear frequency: `omega0`, unless the equation uses that for something
+    /// else.
     pub fn linear_frequency_name(&self) -> Symbol {
         let own = self.definitions.iter().map(|definition| definition.symbol);
         let mut own = own.filter(|symbol| symbol.name().trim_end_matches('_') == "omega0");
@@ -370,7 +425,9 @@ impl Solution {
     }
 
     fn defines(&self, symbol: Symbol) -> bool {
-        self.definitions.iter().any(|definition| definition.symbol == symbol)
+        self.definitions
+            .iter()
+            .any(|definition| definition.symbol == symbol)
     }
 
     /// Rounds every coefficient to fifteen digits and says so.
@@ -402,8 +459,10 @@ impl Solution {
         if let Some(slow) = &mut self.modulation {
             slow.round(&round);
             let motion = slow.motion.take();
-            slow.motion = motion.map(|motion| motion.map(POLYNOMIALS, |coefficient, _| rounded(coefficient)));
-            // Formulas in rounded numbers of many digits say less than the slow equations themselves.
+            slow.motion =
+                motion.map(|motion| motion.map(POLYNOMIALS, |coefficient, _| rounded(coefficient)));
+            // Formulas in rounded numbers of many digits say less than the slow equations
+            // themselves.
             if let (Some(_), Some(release)) = (slow.transient.take(), &mut slow.release) {
                 for part in [&mut release.amplitude, &mut release.phase] {
                     let named = self
@@ -430,16 +489,22 @@ impl Solution {
         self.validity.push(Note::RoundedCoefficients);
     }
 
-    /// What the order counts, in words: `to order 4 in A`, `3 harmonics`; empty for methods of one order.
+    /// What the order counts, in words: `to order 4 in A`, `3 harmonics`; empty for methods of one
+    /// order.
     pub fn order_in_words(&self) -> String {
         let order = self.order;
         match self.method.counts() {
-            Counts::Degrees(_) => self.degrees.unwrap_or(Degrees::Quotient(order, 0)).to_string(),
+            Counts::Degrees(_) => self
+                .degrees
+                .unwrap_or(Degrees::Quotient(order, 0))
+                .to_string(),
             Counts::Powers => {
                 let names: Vec<&str> = self.small_parameters().map(Symbol::written).collect();
                 format!("to order {order} in {}", names.join(" and "))
             }
-            Counts::PowersOfBookkeeping => format!("to order {order} in {}", fresh("p", &self.names())),
+            Counts::PowersOfBookkeeping => {
+                format!("to order {order} in {}", fresh("p", &self.names()))
+            }
             Counts::Passes if order == 1 => "after one pass".to_owned(),
             Counts::Passes => format!("after {order} passes"),
             Counts::Harmonics if order == 1 => "with one harmonic".to_owned(),
@@ -466,8 +531,13 @@ impl Solution {
             let rates = [&slow.amplitude_rate, &slow.phase_rate];
             let symbols = rates.into_iter().flat_map(Expr::symbols).collect();
             let definitions = self.definitions_behind(symbols).into_iter();
-            let definitions =
-                definitions.map(|definition| format!(", {} = {}", definition.symbol, definition.meaning_in_words()));
+            let definitions = definitions.map(|definition| {
+                format!(
+                    ", {} = {}",
+                    definition.symbol,
+                    definition.meaning_in_words()
+                )
+            });
             let law = format!("{amplitude} = {}, {phase} = {}", rates[0], rates[1]);
             return std::iter::once(law).chain(definitions).collect();
         }
@@ -480,7 +550,9 @@ impl Solution {
                 format!("{} in closed form, with rounded coefficients", form.name())
             }
             Shown::Closed(form) => form.to_string(),
-            Shown::Quadrature(_) | Shown::System(_) if self.method.counts() == Counts::Harmonics => {
+            Shown::Quadrature(_) | Shown::System(_)
+                if self.method.counts() == Counts::Harmonics =>
+            {
                 let harmonics = self.balanced_harmonics();
                 let kept: Vec<String> = harmonics.iter().map(|entry| entry.0.to_string()).collect();
                 format!("harmonics {} balanced, solved by numbers", kept.join(", "))
@@ -488,8 +560,13 @@ impl Solution {
             Shown::Quadrature(_) | Shown::System(_) => self.by_numbers().unwrap_or_default(),
         };
         let definitions = self.definitions_of_formula().into_iter();
-        let definitions =
-            definitions.map(|definition| format!(", {} = {}", definition.symbol, definition.meaning_in_words()));
+        let definitions = definitions.map(|definition| {
+            format!(
+                ", {} = {}",
+                definition.symbol,
+                definition.meaning_in_words()
+            )
+        });
         std::iter::once(law).chain(definitions).collect()
     }
 
@@ -498,7 +575,11 @@ impl Solution {
         let shown = self.law.in_one_line();
         match shown {
             Shown::Closed(_) if self.numerical => vec![],
-            Shown::Quadrature(_) | Shown::System(_) if self.method.counts() == Counts::Harmonics => vec![],
+            Shown::Quadrature(_) | Shown::System(_)
+                if self.method.counts() == Counts::Harmonics =>
+            {
+                vec![]
+            }
             _ => self.definitions_behind(shown.symbols()),
         }
     }
@@ -512,23 +593,30 @@ impl Solution {
             }
         }
         let definitions = self.definitions.iter();
-        definitions.filter(|entry| symbols.contains(&entry.symbol)).collect()
+        definitions
+            .filter(|entry| symbols.contains(&entry.symbol))
+            .collect()
     }
 
-    /// A polynomial of this solution, the terms with the lowest power of the small parameters first.
+    /// A polynomial of this solution, the terms with the lowest power of the small parameters
+    /// first.
     pub fn ordered(&self, polynomial: &Polynomial) -> Sum {
-        Sum::new(polynomial, self.numerical, |monomial| self.order_of(monomial))
+        Sum::new(polynomial, self.numerical, |monomial| {
+            self.order_of(monomial)
+        })
     }
 
     /// A relation of this solution, the terms with the highest power of omega first.
     pub fn by_falling_frequency(&self, relation: &Polynomial) -> Sum {
         let omega = Symbol::new("omega");
-        Sum::new(relation, self.numerical, |monomial| -monomial.exponent(omega))
+        Sum::new(relation, self.numerical, |monomial| {
+            -monomial.exponent(omega)
+        })
     }
 
-    /// omega^2 at given values: of the law where it is explicit, else the root of the relation that continues omega0^2
-    /// from amplitude zero or, about an unstable equilibrium, that of the first order; `None` where a value is missing or the branch ends
-    /// before.
+    /// omega^2 at given values: of the law where it is explicit, else the root of the relation that
+    /// continues omega0^2 from amplitude zero or, about an unstable equilibrium, that of the first
+    /// order; `None` where a value is missing or the branch ends before.
     pub fn frequency_squared_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
         if let Some(law) = self.law.frequency_squared() {
             return self.evaluate(law, value_of).ok();
@@ -541,24 +629,38 @@ impl Solution {
         }
         if let Some(form) = self.law.closed_form() {
             let value = self.evaluate_expression(&form.value, value_of)?;
-            return Some(if form.squared { value } else { value * value.abs() });
+            return Some(if form.squared {
+                value
+            } else {
+                value * value.abs()
+            });
         }
         let frequency = self.evaluate(self.law.frequency()?, value_of).ok()?;
         Some(frequency * frequency.abs())
     }
 
-    /// The value of an expression in the parameters, the amplitude and the definitions; `None` where it has none.
-    fn evaluate_expression(&self, expression: &Expr, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
+    /// The value of an expression in the parameters, the amplitude and the definitions; `None`
+    /// where it has none.
+    fn evaluate_expression(
+        &self,
+        expression: &Expr,
+        value_of: &dyn Fn(Symbol) -> Option<f64>,
+    ) -> Option<f64> {
         let value = |symbol: Symbol| {
             let value = self.evaluate(&Polynomial::symbol(symbol), value_of).ok()?;
             Some((symbol, value))
         };
-        let values = expression.symbols().into_iter().map(value).collect::<Option<_>>()?;
+        let values = expression
+            .symbols()
+            .into_iter()
+            .map(value)
+            .collect::<Option<_>>()?;
         expression.evaluate(&values).ok()
     }
 
-    /// The branch of the relation that starts at the linear frequency or, about an unstable equilibrium, at the first order, at given
-    /// values; `None` where there is no relation, a value is missing, or the branch has no start.
+    /// The branch of the relation that starts at the linear frequency or, about an unstable
+    /// equilibrium, at the first order, at given values; `None` where there is no relation, a value
+    /// is missing, or the branch has no start.
     pub fn branch_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<Branch> {
         let relation = self.law.relation()?;
         let (omega, amplitude) = (Symbol::new("omega"), self.amplitude.symbol());
@@ -584,7 +686,8 @@ impl Solution {
         branch::follow(&terms, value_of(amplitude).unwrap_or(0.0), self.precision())
     }
 
-    /// The closed root of the relation, where that is the branch from rest wherever it is real and positive.
+    /// The closed root of the relation, where that is the branch from rest wherever it is real and
+    /// positive.
     pub fn closed_branch(&self) -> Option<&ClosedForm> {
         let relation = self.law.relation()?;
         let form = self.law.closed_form()?;
@@ -596,8 +699,8 @@ impl Solution {
         if self.numerical { 5e-15 } else { f64::EPSILON }
     }
 
-    /// How far rounding of the coefficients may move omega^2, relatively, where the law is a polynomial: its terms cancel far
-    /// outside of its reach. `None` where a value is missing.
+    /// How far rounding of the coefficients may move omega^2, relatively, where the law is a
+    /// polynomial: its terms cancel far outside of its reach. `None` where a value is missing.
     pub fn rounding_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
         let (law, power) = match (self.law.frequency_squared(), self.law.frequency()) {
             (Some(law), _) => (law, 1.0),
@@ -607,37 +710,50 @@ impl Solution {
         Some(power * self.precision() * size / value.abs())
     }
 
-    /// How far rounding of the coefficients may move the swing about the equilibrium, over the amplitude: the terms of its harmonics cancel
-    /// far outside of its reach. `None` if a value is missing, or the amplitude is zero.
+    /// How far rounding of the coefficients may move the swing about the equilibrium, over the
+    /// amplitude: the terms of its harmonics cancel far outside of its reach. `None` if a value is
+    /// missing, or the amplitude is zero.
     pub fn rounding_of_motion_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
         let amplitude = value_of(self.amplitude.symbol()).filter(|amplitude| *amplitude != 0.0)?;
         let harmonics = self.displacement.harmonics();
         let swing = harmonics.iter().filter(|(harmonic, ..)| *harmonic > 0);
         let polynomials = swing.flat_map(|(_, cosine, sine)| [cosine, sine]);
-        let size = |polynomial: &Polynomial| Some(self.evaluate_with_size(polynomial, value_of).ok()?.1);
+        let size =
+            |polynomial: &Polynomial| Some(self.evaluate_with_size(polynomial, value_of).ok()?.1);
         let sizes: Option<Vec<f64>> = polynomials.map(size).collect();
         Some(self.precision() * sizes?.iter().sum::<f64>() / amplitude.abs())
     }
 
-    /// The harmonics that a balance solves for, each with the name of its coefficient; the place about which the motion swings is none.
+    /// The harmonics that a balance solves for, each with the name of its coefficient; the place
+    /// about which the motion swings is none.
     pub fn balanced_harmonics(&self) -> Vec<(usize, Symbol)> {
-        let known = |name: &Symbol| self.defines(*name) || self.parameters.contains(name) || name.name() == "pi";
+        let known = |name: &Symbol| {
+            self.defines(*name) || self.parameters.contains(name) || name.name() == "pi"
+        };
         let named = |(k, cosine, _): (usize, Polynomial, Polynomial)| {
             let name = cosine.symbols().into_iter().find(|name| !known(name))?;
             Some((k, name))
         };
-        self.displacement.harmonics().into_iter().filter_map(named).collect()
+        self.displacement
+            .harmonics()
+            .into_iter()
+            .filter_map(named)
+            .collect()
     }
 
     /// The motion as a numerical Fourier series in `theta`.
     ///
     /// # Errors
     /// The first symbol without a value.
-    pub fn motion(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Result<FourierSeries<Doubles>, Symbol> {
+    pub fn motion(
+        &self,
+        value_of: &dyn Fn(Symbol) -> Option<f64>,
+    ) -> Result<FourierSeries<Doubles>, Symbol> {
         let harmonics = self.displacement.harmonics();
         let length = harmonics.last().map_or(0, |last| last.0 + 1);
         let (mut cosine, mut sine) = (vec![0.0; length], vec![0.0; length]);
-        let uses_definitions = |part: &Polynomial| part.symbols().iter().any(|symbol| self.defines(*symbol));
+        let uses_definitions =
+            |part: &Polynomial| part.symbols().iter().any(|symbol| self.defines(*symbol));
         let defined = match harmonics
             .iter()
             .any(|entry| uses_definitions(&entry.1) || uses_definitions(&entry.2))
@@ -659,7 +775,8 @@ impl Solution {
         Ok(FourierSeries::from_parts(Doubles, cosine, sine))
     }
 
-    /// Whether any polynomial of the solution contains the amplitude symbol: not so for linear equations and limit cycles.
+    /// Whether any polynomial of the solution contains the amplitude symbol: not so for linear
+    /// equations and limit cycles.
     pub fn depends_on_amplitude(&self) -> bool {
         let amplitude = self.amplitude.symbol();
         self.law.contains(amplitude)

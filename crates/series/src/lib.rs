@@ -1,10 +1,11 @@
-//! Series: Taylor expansions of a force, Fourier series in `theta = omega t`, the singularities of long power series.
+//! Series: Taylor expansions of a force, Fourier series in `theta = omega t`, the singularities of
+//! long power series.
 //!
 //! In: an expression, an order. Out: coefficients of any ring, order by order, none computed twice.
 //!
-//! Five names to know: [`series::FourierSeries`]; [`mod@series::taylor`], the expansion of an expression; [`series::recurrence`], the
-//! same as recurrences of numbers; [`series::singularity`], where a long series ceases to converge; [`series::terms`], sums as they
-//! are written.
+//! Five names to know: [`series::FourierSeries`]; [`mod@series::taylor`], the expansion of an
+//! expression; [`series::recurrence`], the same as recurrences of numbers; [`series::singularity`],
+//! where a long series ceases to converge; [`series::terms`], sums as they are written.
 
 #![warn(missing_docs)]
 

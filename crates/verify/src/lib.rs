@@ -1,11 +1,11 @@
 //! The truth that a formula is held against.
 //!
-//! In: the original equation, and a solution to be judged. Out: trajectories, Floquet multipliers, verdicts, proofs, and the steady
-//! states of driven and self-excited oscillators.
+//! In: the original equation, and a solution to be judged. Out: trajectories, Floquet multipliers,
+//! verdicts, proofs, and the steady states of driven and self-excited oscillators.
 //!
-//! Five names to know: [`verify::judge`] and [`verify::Verdict`]; [`trajectory`], any equation followed from its start;
-//! [`certificate`], a proof beside a formula; [`response`], branches of steady states; [`hill`], linear equations with periodic
-//! coefficients.
+//! Five names to know: [`verify::judge`] and [`verify::Verdict`]; [`trajectory`], any equation
+//! followed from its start; [`certificate`], a proof beside a formula; [`response`], branches of
+//! steady states; [`hill`], linear equations with periodic coefficients.
 
 #![warn(missing_docs)]
 

@@ -4,11 +4,13 @@
 //! h = sum q_i' dL/dq_i' - L,  L = T - V        dh/dt = -dL/dt + sum q_i' (Q_i - dD/dq_i')
 //! ```
 //!
-//! (H. Goldstein, *Classical Mechanics*, 2nd ed., section 2-6, for h; of an equation it is `x'^2/2 + V(x)`.) In: coordinates, their accelerations, numbers for every
-//! parameter, a start, a duration. Out: a [`Trajectory`]: every state at any time, the balance of energy where a mechanism has
-//! energies, and the same by the other integrator to judge it. Power series go first; where they end, as at a root or a touch that
-//! is no power series in time, Runge-Kutta takes the whole motion. Where dry friction, `sgn(x')`, `sgn(x' - c)` on a belt or
-//! `sgn(x' - y')` between two bodies, holds something, it stays until the force on it is more than friction bears.
+//! (H. Goldstein, *Classical Mechanics*, 2nd ed., section 2-6, for h; of an equation it is
+//! `x'^2/2 + V(x)`.) In: coordinates, their accelerations, numbers for every parameter, a start, a
+//! duration. Out: a [`Trajectory`]: every state at any time, the balance of energy where a
+//! mechanism has energies, and the same by the other integrator to judge it. Power series go first;
+//! where they end, as at a root or a touch that is no power series in time, Runge-Kutta takes the
+//! whole motion. Where dry friction, `sgn(x')`, `sgn(x' - c)` on a belt or `sgn(x' - y')` between
+//! two bodies, holds something, it stays until the force on it is more than friction bears.
 
 mod energy;
 mod hold;
@@ -101,7 +103,8 @@ pub struct Balance {
     pub work: f64,
     /// What each of them has done, by its name.
     pub works: Vec<(String, f64)>,
-    /// The largest |h - h(0) - work| of many times, over the largest |h - h(0)| or kinetic share: how far the account is off.
+    /// The largest |h - h(0) - work| of many times, over the largest |h - h(0)| or kinetic share:
+    /// how far the account is off.
     pub residual: f64,
 }
 
@@ -154,8 +157,9 @@ fn names(symbols: &[Symbol]) -> String {
 const ACCOUNTS: u32 = 2000;
 
 impl Course {
-    /// That of an equation of motion, from rest at zero for 50 units of time. Its energy is that of the velocity and of all terms of
-    /// the position alone that have a potential in closed form; every other term works for itself.
+    /// That of an equation of motion, from rest at zero for 50 units of time. Its energy is that of
+    /// the velocity and of all terms of the position alone that have a potential in closed form;
+    /// every other term works for itself.
     pub fn of_equation(oscillator: &Oscillator) -> Self {
         let coordinate = oscillator.coordinate;
         let velocity = oscillator.velocity();
@@ -175,7 +179,10 @@ impl Course {
     ///
     /// # Errors
     /// Energies that give no accelerations.
-    pub fn of_mechanism(mechanism: &Mechanism, equations: &Equations) -> Result<Self, TrajectoryError> {
+    pub fn of_mechanism(
+        mechanism: &Mechanism,
+        equations: &Equations,
+    ) -> Result<Self, TrajectoryError> {
         let lagrangian = &mechanism.kinetic - &mechanism.potential;
         let mut energy = vec![-&lagrangian];
         let moving = -lagrangian.differentiate(Symbol::new("t"))?;
@@ -203,7 +210,12 @@ impl Course {
         ))
     }
 
-    fn new(coordinates: Vec<Symbol>, equations: Vec<Expr>, rates: Rates, energy: Option<Energy>) -> Self {
+    fn new(
+        coordinates: Vec<Symbol>,
+        equations: Vec<Expr>,
+        rates: Rates,
+        energy: Option<Energy>,
+    ) -> Self {
         Self {
             start: vec![0.0; rates.states.len()],
             coordinates,
@@ -237,7 +249,8 @@ impl Course {
         Ok(())
     }
 
-    /// The names that take a number: those of the motion, and those of the energy alone, as a mass that cancels.
+    /// The names that take a number: those of the motion, and those of the energy alone, as a mass
+    /// that cancels.
     pub fn parameters(&self) -> Vec<Symbol> {
         let mut all = self.parameters_of_motion();
         all.extend(self.parameters_of_energy());
@@ -247,14 +260,25 @@ impl Course {
     /// The names without whose numbers nothing moves.
     fn parameters_of_motion(&self) -> BTreeSet<Symbol> {
         let section = self.section.iter().map(Section::expression);
-        let all = self.rates.right.iter().chain(section).flat_map(Expr::symbols);
+        let all = self
+            .rates
+            .right
+            .iter()
+            .chain(section)
+            .flat_map(Expr::symbols);
         all.filter(|name| !self.is_variable(*name)).collect()
     }
 
     /// The names that stand in the energy.
     fn parameters_of_energy(&self) -> BTreeSet<Symbol> {
         let energy = self.energy.iter();
-        let energy = energy.flat_map(|energy| energy.powers.iter().map(|(_, power)| power).chain([&energy.value]));
+        let energy = energy.flat_map(|energy| {
+            energy
+                .powers
+                .iter()
+                .map(|(_, power)| power)
+                .chain([&energy.value])
+        });
         let all = energy.flat_map(Expr::symbols);
         all.filter(|name| !self.is_variable(*name)).collect()
     }
@@ -263,12 +287,15 @@ impl Course {
         self.rates.states.contains(&name) || name.name() == "t"
     }
 
-    /// The names without a number that the motion does not depend on and its energy does: without them the energy is not accounted
-    /// for.
+    /// The names without a number that the motion does not depend on and its energy does: without
+    /// them the energy is not accounted for.
     pub fn missing_for_energy(&self) -> Vec<Symbol> {
         let of_motion = self.parameters_of_motion();
         let missing = |name: &Symbol| !self.values.contains_key(name) && !of_motion.contains(name);
-        self.parameters_of_energy().into_iter().filter(missing).collect()
+        self.parameters_of_energy()
+            .into_iter()
+            .filter(missing)
+            .collect()
     }
 
     /// Follows the motion.
@@ -291,10 +318,18 @@ impl Course {
         self.followed(None, Accounted::Yes)
     }
 
-    /// [`Course::follow`], with what is ready of another course that has other numbers, or another start, alone.
-    fn followed(self, ready: Option<&Ready>, accounted: Accounted) -> Result<Trajectory, TrajectoryError> {
-        let first = self.clone().followed_by(Integrator::Taylor, ready, accounted);
-        // A start without a series, or a series that ends, may still be followed by evaluation alone.
+    /// [`Course::follow`], with what is ready of another course that has other numbers, or another
+    /// start, alone.
+    fn followed(
+        self,
+        ready: Option<&Ready>,
+        accounted: Accounted,
+    ) -> Result<Trajectory, TrajectoryError> {
+        let first = self
+            .clone()
+            .followed_by(Integrator::Taylor, ready, accounted);
+        // A start without a series, or a series that ends, may still be followed by evaluation
+        // alone.
         match first {
             Ok(motion) if motion.reason != End::Singular => Ok(motion),
             Ok(_) | Err(TrajectoryError::System(SystemError::Start(_))) => {
@@ -376,7 +411,13 @@ impl Course {
     /// Whether the equations have digits where it begins.
     fn check_start(&self) -> Result<(), TrajectoryError> {
         let mut at_start = self.values.clone();
-        at_start.extend(self.rates.states.iter().copied().zip(self.start.iter().copied()));
+        at_start.extend(
+            self.rates
+                .states
+                .iter()
+                .copied()
+                .zip(self.start.iter().copied()),
+        );
         at_start.insert(Symbol::new("t"), 0.0);
         for right in &self.rates.right {
             right.check_digits(&at_start, &self.rates.states)?;
@@ -407,7 +448,10 @@ impl Course {
             .map(|right| roots_across_corners(right, &self.values))
             .collect::<Result<_, _>>()?;
         let mut taken: Vec<Symbol> = states.iter().chain(&needed).copied().collect();
-        let energy = self.energy.as_ref().filter(|_| self.missing_for_energy().is_empty());
+        let energy = self
+            .energy
+            .as_ref()
+            .filter(|_| self.missing_for_energy().is_empty());
         for (_, power) in energy.iter().flat_map(|energy| &energy.powers) {
             let work = fresh("work", &taken);
             taken.push(work);
@@ -419,7 +463,8 @@ impl Course {
             .filter_map(|name| Some((*name, *self.values.get(name)?)))
             .collect();
         let critical = pulse::critical_times(&right, &states, &values, self.duration);
-        let system = System::new(&states, Symbol::new("t"), &right, &values)?.with_critical_times(&critical);
+        let system =
+            System::new(&states, Symbol::new("t"), &right, &values)?.with_critical_times(&critical);
         let moving = Rates { states, right };
         let section = self.section.as_ref();
         let events = section.map_or(vec![], |section| section.events(&moving));
@@ -459,8 +504,8 @@ struct Ready {
 }
 
 impl Ready {
-    /// These equations take the numbers of a course that differs in its numbers and its start alone. `None` says that other numbers make other
-    /// equations.
+    /// These equations take the numbers of a course that differs in its numbers and its start
+    /// alone. `None` says that other numbers make other equations.
     fn with_numbers(&self, course: &Course) -> Option<Self> {
         let mut values = self.values.clone();
         for (name, value) in &mut values {
@@ -485,7 +530,8 @@ impl Ready {
 struct Piece {
     from: f64,
     path: Path,
-    /// How all states are read from those of the path, where something is held; nothing where the path has all states.
+    /// How all states are read from those of the path, where something is held; nothing where the
+    /// path has all states.
     layout: Option<Layout>,
     /// The number of events of the path that are those of the section; they come first.
     recorded: usize,
@@ -543,7 +589,8 @@ impl Trajectory {
         let count = self.course.rates.states.len();
         let at = |time: f64, state: &[f64]| {
             let (state, works) = state.split_at(count);
-            // Kinetic and potential energy may cancel each other: the largest of them counts beside their sum.
+            // Kinetic and potential energy may cancel each other: the largest of them counts beside
+            // their sum.
             let parts = parts.iter().map(|part| part(time, state).abs());
             let largest = parts.filter(|part| part.is_finite()).fold(0.0, f64::max);
             let now = Some(value(time, state)).filter(|now| now.is_finite())?;
@@ -569,19 +616,30 @@ impl Trajectory {
             start,
             end,
             work: sum(&works),
-            works: energy.powers.iter().map(|(name, _)| name.clone()).zip(works).collect(),
+            works: energy
+                .powers
+                .iter()
+                .map(|(name, _)| name.clone())
+                .zip(works)
+                .collect(),
             residual: if moved > 0.0 { astray / moved } else { 0.0 },
         })
     }
 
-    /// An expression as a function of the time and the states, at the values of this motion; `None` where a name has no value.
+    /// An expression as a function of the time and the states, at the values of this motion; `None`
+    /// where a name has no value.
     fn compiled(&self, expression: &Expr) -> Option<impl Fn(f64, &[f64]) -> f64> {
         let states = &self.course.rates.states;
         let moving: Vec<Symbol> = std::iter::once(Symbol::new("t"))
             .chain(states.iter().copied())
             .collect();
-        let constant = self.course.values.iter().filter(|(name, _)| !moving.contains(name));
-        let (constants, numbers): (Vec<Symbol>, Vec<f64>) = constant.map(|(name, value)| (*name, *value)).unzip();
+        let constant = self
+            .course
+            .values
+            .iter()
+            .filter(|(name, _)| !moving.contains(name));
+        let (constants, numbers): (Vec<Symbol>, Vec<f64>) =
+            constant.map(|(name, value)| (*name, *value)).unzip();
         let function = CompiledFunction::new(expression, &[moving, constants].concat()).ok()?;
         Some(move |time: f64, state: &[f64]| function.call(&[&[time], state, &numbers].concat()))
     }
@@ -615,17 +673,23 @@ impl Trajectory {
                 continue;
             }
             for time in own {
-                let Some(states) = piece.at(*time) else { continue };
+                let Some(states) = piece.at(*time) else {
+                    continue;
+                };
                 kept.push(*time);
                 for (column, state) in columns.iter_mut().zip(states) {
                     column.push(state);
                 }
             }
         }
-        Sampled { times: kept, columns }
+        Sampled {
+            times: kept,
+            columns,
+        }
     }
 
-    /// The stretches of time, from when until when, on which dry friction holds something: at rest, on a belt or on another body.
+    /// The stretches of time, from when until when, on which dry friction holds something: at rest,
+    /// on a belt or on another body.
     pub fn held(&self) -> impl Iterator<Item = [f64; 2]> {
         let mut held: Vec<[f64; 2]> = Vec::new();
         for piece in self.pieces.iter().filter(|piece| piece.is_held()) {
@@ -660,7 +724,8 @@ impl Trajectory {
         Some(state)
     }
 
-    /// The largest difference of any coordinate from another motion of the same course, over the size of that coordinate.
+    /// The largest difference of any coordinate from another motion of the same course, over the
+    /// size of that coordinate.
     pub fn difference(&self, other: &Self) -> f64 {
         let end = self.end().min(other.end());
         let count = self.course.coordinates.len();
@@ -687,7 +752,9 @@ pub fn in_words(end: End) -> &'static str {
         End::StepLimit => "after as many steps as were allowed",
         End::Singular => "where a state or its rate has no value, or no next step",
         End::Overflow => "where a state leaves the range of numbers, 1e300",
-        End::Sticks => "on a corner that the rates on both sides lead back to, where it is not followed",
+        End::Sticks => {
+            "on a corner that the rates on both sides lead back to, where it is not followed"
+        }
         End::Interrupted => "interrupted",
     }
 }

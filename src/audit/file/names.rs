@@ -38,9 +38,13 @@ pub(super) fn used(claim: &Claim) -> BTreeSet<Symbol> {
     found
 }
 
-/// Refuses names that are nearly those of numbers, a missing equation, and keys that no name asks for.
+/// Refuses names that are nearly those of numbers, a missing equation, and keys that no name asks
+/// for.
 pub(super) fn check_names(section: &Section, claim: &Claim) -> Found<()> {
-    if !matches!(claim.question.quantity, Quantity::Value(_) | Quantity::Trend(_)) {
+    if !matches!(
+        claim.question.quantity,
+        Quantity::Value(_) | Quantity::Trend(_)
+    ) {
         return Ok(());
     }
     let used = used(claim);
@@ -55,7 +59,8 @@ pub(super) fn check_names(section: &Section, claim: &Claim) -> Found<()> {
             Supposition::Values(values) => values.iter().any(|(known, _)| *known == name),
             _ => false,
         });
-        let values = std::iter::once(&claim.question.values).chain(claim.entries.iter().map(|entry| &entry.values));
+        let values = std::iter::once(&claim.question.values)
+            .chain(claim.entries.iter().map(|entry| &entry.values));
         supposed || values.into_iter().any(|values| values.contains_key(&name))
     };
     let names = || NAMES.iter().map(|entry| entry.0);
@@ -69,7 +74,10 @@ pub(super) fn check_names(section: &Section, claim: &Claim) -> Found<()> {
             );
         }
     }
-    let asks = |wanted: &dyn Fn(&str) -> bool| used.iter().any(|name| is_a_name(name.name()) && wanted(name.name()));
+    let asks = |wanted: &dyn Fn(&str) -> bool| {
+        used.iter()
+            .any(|name| is_a_name(name.name()) && wanted(name.name()))
+    };
     let of_a_law = |name: &str| ["frequency", "true_frequency", "max_deviation"].contains(&name);
     let of_an_impact = |name: &str| {
         !of_a_law(name)
@@ -88,12 +96,21 @@ pub(super) fn check_names(section: &Section, claim: &Claim) -> Found<()> {
         );
     }
     let keys = [
-        section.equation.as_ref().map(|text| ("equation", text.span())),
+        section
+            .equation
+            .as_ref()
+            .map(|text| ("equation", text.span())),
         section.method.as_ref().map(|text| ("method", text.span())),
         section.order.as_ref().map(|order| ("order", order.span())),
         section.small.as_ref().map(|text| ("small", text.span())),
-        section.amplitude.as_ref().map(|text| ("amplitude", text.span())),
-        section.taylor.as_ref().map(|degree| ("taylor", degree.span())),
+        section
+            .amplitude
+            .as_ref()
+            .map(|text| ("amplitude", text.span())),
+        section
+            .taylor
+            .as_ref()
+            .map(|degree| ("taylor", degree.span())),
     ];
     if let (Some((key, span)), false) = (
         keys.into_iter().flatten().next(),
@@ -120,10 +137,17 @@ pub(super) fn check_names(section: &Section, claim: &Claim) -> Found<()> {
 }
 
 /// The names that a computed number needs.
-pub(super) fn asked_by<'a>(name: Symbol, equation: Option<&'a Oscillator>) -> impl Iterator<Item = Symbol> + 'a {
-    let needs = NAMES.iter().find(|entry| entry.0 == name.name()).map(|entry| entry.1);
+pub(super) fn asked_by<'a>(
+    name: Symbol,
+    equation: Option<&'a Oscillator>,
+) -> impl Iterator<Item = Symbol> + 'a {
+    let needs = NAMES
+        .iter()
+        .find(|entry| entry.0 == name.name())
+        .map(|entry| entry.1);
     let words = needs.into_iter().flat_map(|needs| needs.split(", "));
-    let own = words.filter(|word| !word.is_empty() && !word.contains("equation") && !word.contains(' '));
+    let own =
+        words.filter(|word| !word.is_empty() && !word.contains("equation") && !word.contains(' '));
     let of_a_law = needs.is_some_and(|needs| needs.starts_with("equation"));
     // An impact has the parameters of its swing, and the amplitude of a law has either letter.
     let parameters = equation
@@ -131,7 +155,9 @@ pub(super) fn asked_by<'a>(name: Symbol, equation: Option<&'a Oscillator>) -> im
         .into_iter()
         .flat_map(|equation| &equation.parameters);
     let letter = of_a_law.then(|| Symbol::new("a"));
-    own.map(Symbol::new).chain(parameters.copied()).chain(letter)
+    own.map(Symbol::new)
+        .chain(parameters.copied())
+        .chain(letter)
 }
 
 /// Refuses values of a claim that nothing asks for.
@@ -148,10 +174,13 @@ pub(super) fn check_values(section: &Section, claim: &Claim) -> Found<()> {
         _ => vec![],
     };
     if !formulas.is_empty() {
-        let printed = claim.entries.iter().filter_map(|entry| match &entry.stated {
-            Stated::Formula(printed) => Some(printed),
-            _ => None,
-        });
+        let printed = claim
+            .entries
+            .iter()
+            .filter_map(|entry| match &entry.stated {
+                Stated::Formula(printed) => Some(printed),
+                _ => None,
+            });
         let all = formulas
             .into_iter()
             .chain(printed)
@@ -167,13 +196,19 @@ pub(super) fn check_values(section: &Section, claim: &Claim) -> Found<()> {
     let own = section.values.as_ref().map(Spanned::get_ref);
     let rows = section.entries.iter().flat_map(|rows| rows.get_ref());
     let tables = own.into_iter().chain(rows.map(|row| &row.get_ref().values));
-    let supposed = section.suppose.iter().flat_map(|suppose| &suppose.get_ref().values);
+    let supposed = section
+        .suppose
+        .iter()
+        .flat_map(|suppose| &suppose.get_ref().values);
     for (name, value) in tables.chain(supposed).flatten() {
         let symbol = symbol(name, value.span())?;
         if !used.contains(&symbol) && *quantity != Quantity::Nothing {
             return mistake(
                 value.span(),
-                format!("nothing in claim `{}` asks for `{name}`: leave it out", claim.id),
+                format!(
+                    "nothing in claim `{}` asks for `{name}`: leave it out",
+                    claim.id
+                ),
             );
         }
     }

@@ -1,4 +1,5 @@
-//! Single values of a claims file: expressions, equations, methods, verdicts, each with its place for messages.
+//! Single values of a claims file: expressions, equations, methods, verdicts, each with its place
+//! for messages.
 
 use super::{Found, Mistake, Table, Text, mistake};
 use crate::audit::claim::Verdict;
@@ -16,13 +17,18 @@ use toml::Spanned;
 
 pub(super) fn table(table: &Table) -> Found<BTreeMap<Symbol, Expr>> {
     let row = |(name, value): (&String, &Spanned<toml::Value>)| {
-        Ok((symbol(name, value.span())?, number(value.get_ref(), value.span())?))
+        Ok((
+            symbol(name, value.span())?,
+            number(value.get_ref(), value.span())?,
+        ))
     };
     table.iter().map(row).collect()
 }
 
 pub(super) fn symbol(name: &str, span: Range<usize>) -> Found<Symbol> {
-    let found = parse_expression(name).ok().and_then(|name| name.as_symbol());
+    let found = parse_expression(name)
+        .ok()
+        .and_then(|name| name.as_symbol());
     match found.filter(|symbol| symbol.name() == name) {
         Some(symbol) => Ok(symbol),
         None => mistake(
@@ -63,7 +69,8 @@ pub(super) fn equal_to_zero(text: &Text) -> Found<Expr> {
 }
 
 pub(super) fn equation(text: &Text) -> Found<Oscillator> {
-    let equation = catalog::find(text.get_ref()).map_or(text.get_ref().as_str(), |entry| entry.equation);
+    let equation =
+        catalog::find(text.get_ref()).map_or(text.get_ref().as_str(), |entry| entry.equation);
     Oscillator::parse(equation).or_else(|error| {
         // Its own picture of the place is that of the text alone.
         let what = error.to_string();
@@ -135,6 +142,9 @@ pub(super) fn tolerance(number: &Spanned<f64>) -> Found<f64> {
     let value = *number.get_ref();
     match value.is_finite() && value > 0.0 {
         true => Ok(value),
-        false => mistake(number.span(), format!("a tolerance is a positive number, not {value}")),
+        false => mistake(
+            number.span(),
+            format!("a tolerance is a positive number, not {value}"),
+        ),
     }
 }

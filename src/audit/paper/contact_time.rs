@@ -2,10 +2,12 @@
 
 use crate::impact::{Quantity, SiImpact};
 
-/// The contact time that the paper prints after its equation (15), in s: compared with, never computed from.
+/// The contact time that the paper prints after its equation (15), in s: compared with, never
+/// computed from.
 pub const CONTACT_TIME: f64 = 9.258e-8;
 
-/// The contact time of every reading over the printed [`CONTACT_TIME`]: one, if that were reproduced.
+/// The contact time of every reading over the printed [`CONTACT_TIME`]: one, if that were
+/// reproduced.
 ///
 /// ```
 /// use lindstedt::audit::paper::over_contact_time;

@@ -1,6 +1,8 @@
-//! The paper's equations (1) to (8), each held against the equation that follows from the energies of its pendulum and barrier.
+//! The paper's equations (1) to (8), each held against the equation that follows from the energies
+//! of its pendulum and barrier.
 //!
-//! A printed equation is never computed with: it is compared with the derived one term by term and unit by unit.
+//! A printed equation is never computed with: it is compared with the derived one term by term and
+//! unit by unit.
 
 use std::collections::BTreeMap;
 
@@ -32,16 +34,21 @@ const POTENTIAL: &str = "m*g*L*(1 - cos(x))";
 const CONTACT_FORCE: &str = "4*E/3*sqrt(R)*(l*sin(x - xc))^(3/2)";
 /// V_c of equation (4); omega is sqrt(g/L).
 const CONTACT_DAMPING: &str = "mu4*sqrt(g/L)*x'*sin(x - xc)^(3/2)";
-/// Equation (5) without its contact, with 2 zeta omega = c/(m L^2), alpha omega^2 = F/(m L^2) and omega^2 = g/L.
-const PRINTED_SWING: &str = "x'' + c*x'/(m*L^2) + F*sgn(x')/(m*L^2) - Ae*Omega^2/L*sin(Omega*t)*cos(x) + g/L*sin(x)";
+/// Equation (5) without its contact, with 2 zeta omega = c/(m L^2), alpha omega^2 = F/(m L^2) and
+/// omega^2 = g/L.
+const PRINTED_SWING: &str =
+    "x'' + c*x'/(m*L^2) + F*sgn(x')/(m*L^2) - Ae*Omega^2/L*sin(Omega*t)*cos(x) + g/L*sin(x)";
 /// Equation (7), with sgn(x') in the place of equation (6).
-const PRINTED_SCALED: &str =
-    "x'' + 2*zeta*x' + alpha*sgn(x') - beta*sin(eta*t)*cos(x) + sin(x) + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc)";
+const PRINTED_SCALED: &str = "x'' + 2*zeta*x' + alpha*sgn(x') - beta*sin(eta*t)*cos(x) + sin(x) + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc)";
 /// gamma and beta of equation (8), with omega^2 = g/L.
-const PRINTED_GROUPS: [(&str, &str); 2] = [("gamma", "4*l^(5/2)*E*sqrt(R)/(3*g*m*L)"), ("beta", "Ae*Omega^2/g")];
+const PRINTED_GROUPS: [(&str, &str); 2] = [
+    ("gamma", "4*l^(5/2)*E*sqrt(R)/(3*g*m*L)"),
+    ("beta", "Ae*Omega^2/g"),
+];
 
-/// The paper's mechanism: a pendulum on a driven pivot that meets an elastic barrier, with viscous and dry friction. Hertz's force
-/// acts on the lever l, the damping of equation (4) is a torque; Ae is the amplitude A of the pivot, mu4 the mu of equation (4).
+/// The paper's mechanism: a pendulum on a driven pivot that meets an elastic barrier, with viscous
+/// and dry friction. Hertz's force acts on the lever l, the damping of equation (4) is a torque; Ae
+/// is the amplitude A of the pivot, mu4 the mu of equation (4).
 pub fn pendulum() -> Mechanism {
     let read = |text: &str| text.parse::<Expr>().unwrap_or_else(|_| Expr::zero());
     let contact = format!("-H(x - xc)*(l*{CONTACT_FORCE} + {CONTACT_DAMPING})");
@@ -76,7 +83,8 @@ pub fn units() -> BTreeMap<Symbol, Dimension> {
     .into()
 }
 
-/// The mechanism of the paper with the units of its letters, ready for [`study`](crate::mechanics::study).
+/// The mechanism of the paper with the units of its letters, ready for
+/// [`study`](crate::mechanics::study).
 pub fn mechanism() -> MechanismQuestion {
     MechanismQuestion {
         mechanism: pendulum(),
@@ -179,14 +187,19 @@ fn kinetic(
         agrees: Some(refused.is_ok()),
         words: match (refused, squared) {
             (Ok(()), _) => "every term is an energy".to_owned(),
-            (Err(error), true) => format!("{error}; with the square, (L*x'*sin(x))^2, every term is an energy"),
+            (Err(error), true) => {
+                format!("{error}; with the square, (L*x'*sin(x))^2, every term is an energy")
+            }
             (Err(error), false) => error.to_string(),
         },
     })
 }
 
 /// Equation (5): its swing term by term, its contact by its unit.
-fn equation_of_motion(equations: &Equations, all: &BTreeMap<Symbol, Dimension>) -> Result<Finding, PaperError> {
+fn equation_of_motion(
+    equations: &Equations,
+    all: &BTreeMap<Symbol, Dimension>,
+) -> Result<Finding, PaperError> {
     let swing: Expr = PRINTED_SWING.parse().unwrap_or_else(|_| Expr::zero());
     let own: Expr = equations.left[0]
         .expand()?
@@ -213,7 +226,9 @@ fn equation_of_motion(equations: &Equations, all: &BTreeMap<Symbol, Dimension>) 
     };
     let contact_words = match (&contact, lever) {
         (Ok(()), _) => "so does the contact".to_owned(),
-        (Err(error), true) => format!("of the contact, {error}: the lever l is missing, with which it is a torque"),
+        (Err(error), true) => {
+            format!("of the contact, {error}: the lever l is missing, with which it is a torque")
+        }
         (Err(error), false) => error.to_string(),
     };
     Ok(Finding {
@@ -265,7 +280,10 @@ fn definitions(groups: &Groups) -> Result<Finding, PaperError> {
         agrees: Some(differing.is_empty()),
         words: match differing.as_slice() {
             [] => "gamma and beta are the groups that the derived equation has".to_owned(),
-            names => format!("not the groups that the derived equation has: {}", names.join(", ")),
+            names => format!(
+                "not the groups that the derived equation has: {}",
+                names.join(", ")
+            ),
         },
     })
 }

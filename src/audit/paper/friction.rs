@@ -1,7 +1,8 @@
 //! Table 1 of the paper, recomputed, and the value of pi that its digits were made with.
 //!
-//! The printed digits stand in [`SPEEDS`] to be compared with; nothing is computed from them but the range of pi that they
-//! allow. They are read from Table 1 of the paper as it is printed, signs and number of digits included.
+//! The printed digits stand in [`SPEEDS`] to be compared with; nothing is computed from them but
+//! the range of pi that they allow. They are read from Table 1 of the paper as it is printed, signs
+//! and number of digits included.
 
 use std::f64::consts::PI;
 
@@ -138,7 +139,11 @@ pub struct Entry {
 impl Entry {
     fn of(printed: &'static str, number: f64) -> Self {
         let [rounded, cut] = has_digits(printed, number);
-        Self { printed, rounded, cut }
+        Self {
+            printed,
+            rounded,
+            cut,
+        }
     }
 
     /// `rounded`, `cut`, `either` or `neither`.
@@ -157,7 +162,8 @@ impl Entry {
 pub struct TableRow {
     /// The two laws at its speed.
     pub laws: SpeedRow,
-    /// The printed value and error at a speed of the paper, with what the best pi makes of them; nothing at any other speed.
+    /// The printed value and error at a speed of the paper, with what the best pi makes of them;
+    /// nothing at any other speed.
     pub printed: Option<[Entry; 2]>,
 }
 
@@ -182,7 +188,8 @@ impl PiReading {
             .iter()
             .flat_map(|(speed, printed)| entries(*speed, printed, value))
             .collect();
-        let count = |wanted: fn(&Entry) -> bool| entries.iter().filter(|entry| wanted(entry)).count();
+        let count =
+            |wanted: fn(&Entry) -> bool| entries.iter().filter(|entry| wanted(entry)).count();
         Self {
             name,
             value,
@@ -217,7 +224,8 @@ pub struct Table {
     pub rows: Vec<TableRow>,
     /// Every value of pi that was tried.
     pub readings: Vec<PiReading>,
-    /// The least and the greatest pi with which every printed entry comes out, rounded or cut off; nothing where none does.
+    /// The least and the greatest pi with which every printed entry comes out, rounded or cut off;
+    /// nothing where none does.
     pub pi_range: Option<[f64; 2]>,
     best: usize,
 }
@@ -267,7 +275,8 @@ impl Table {
     }
 }
 
-/// The values of pi with which every printed entry comes out: each allows a range, since value and error are monotonic in pi.
+/// The values of pi with which every printed entry comes out: each allows a range, since value and
+/// error are monotonic in pi.
 fn pi_range() -> Option<[f64; 2]> {
     let mut range = [f64::MIN_POSITIVE, f64::MAX];
     for (speed, printed) in SPEEDS.iter().filter(|(speed, _)| *speed != 0.0) {
@@ -326,7 +335,10 @@ mod tests {
         let reading = PiReading::of("3.14", short);
         let speed = reading.exceeds_from().unwrap();
         assert!((arctangent(speed, short) - 1.0).abs() < 1e-14);
-        assert!(arctangent(1e9, short) > 1.0005 && (reading.limit() - arctangent(1e12, short)).abs() < 1e-12);
+        assert!(
+            arctangent(1e9, short) > 1.0005
+                && (reading.limit() - arctangent(1e12, short)).abs() < 1e-12
+        );
         assert_eq!(PiReading::of("pi", PI).exceeds_from(), None);
     }
 }

@@ -101,7 +101,9 @@ pub(super) const SYNTAX: Syntax = Syntax {
     power: |Base { inside, .. }, exponent| match exponent {
         Exponent::Whole(number) | Exponent::Real(number) => format!("pow({inside}, {number})"),
         Exponent::Half => format!("sqrt({inside})"),
-        Exponent::OddRoot(number, true) => format!("copysign(pow(fabs({inside}), {number}), {inside})"),
+        Exponent::OddRoot(number, true) => {
+            format!("copysign(pow(fabs({inside}), {number}), {inside})")
+        }
         Exponent::OddRoot(number, false) => format!("pow(fabs({inside}), {number})"),
     },
     function,
@@ -144,15 +146,25 @@ fn beginning(used: &Used) -> String {
 }
 
 fn routine(text: &Text) -> String {
-    let arguments: Vec<String> = text.arguments.iter().map(|name| format!("double {name}")).collect();
+    let arguments: Vec<String> = text
+        .arguments
+        .iter()
+        .map(|name| format!("double {name}"))
+        .collect();
     let arguments = if arguments.is_empty() {
         "void".to_owned()
     } else {
         arguments.join(", ")
     };
-    let head = format!("// {}.\ndouble {}({arguments})\n{{\n", text.about, text.name);
+    let head = format!(
+        "// {}.\ndouble {}({arguments})\n{{\n",
+        text.about, text.name
+    );
     let lines = text.lines.iter().map(|line| format!("    {line}\n"));
-    std::iter::once(head).chain(lines).chain(["}\n".to_owned()]).collect()
+    std::iter::once(head)
+        .chain(lines)
+        .chain(["}\n".to_owned()])
+        .collect()
 }
 
 fn helper(function: Function) -> Option<&'static str> {

@@ -58,7 +58,10 @@ pub(super) const SYNTAX: Syntax = Syntax {
     pi: "pi",
     operators: ["*", "/"],
     between_values: ["*", "/"],
-    power: |Base { inside, operand, .. }, exponent| match exponent {
+    power: |Base {
+                inside, operand, ..
+            },
+            exponent| match exponent {
         Exponent::Whole(number) => format!("{operand}^{number}"),
         Exponent::Half => format!("sqrt({inside})"),
         Exponent::OddRoot(number, true) => format!("copysign(abs({inside})^({number}), {inside})"),

@@ -1,5 +1,5 @@
-//! MATLAB and GNU Octave. Arguments may be arrays. A number that does not exist is NaN, or an error of `realsqrt` and its like,
-//! which stand for functions that would make complex numbers.
+//! MATLAB and GNU Octave. Arguments may be arrays. A number that does not exist is NaN, or an error
+//! of `realsqrt` and its like, which stand for functions that would make complex numbers.
 
 use super::{Base, Break, Exponent, Syntax, Text, Used};
 use crate::expr::Function;
@@ -50,7 +50,10 @@ pub(super) const SYNTAX: Syntax = Syntax {
     pi: "pi",
     operators: ["*", "/"],
     between_values: [".*", "./"],
-    power: |Base { inside, operand, .. }, exponent| match exponent {
+    power: |Base {
+                inside, operand, ..
+            },
+            exponent| match exponent {
         Exponent::Whole(number) => format!("{operand}.^{number}"),
         Exponent::Half => format!("realsqrt({inside})"),
         Exponent::OddRoot(number, true) => format!("(sign({inside}).*abs({inside}).^({number}))"),
@@ -115,7 +118,10 @@ fn routine(text: &Text) -> String {
         text.arguments.join(", ")
     );
     let lines = text.lines.iter().map(|line| format!("    {line}\n"));
-    std::iter::once(head).chain(lines).chain(["end\n".to_owned()]).collect()
+    std::iter::once(head)
+        .chain(lines)
+        .chain(["end\n".to_owned()])
+        .collect()
 }
 
 fn helper(function: Function) -> Option<&'static str> {

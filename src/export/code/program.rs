@@ -1,5 +1,5 @@
-//! What the program of an answer consists of, whatever the language: `angular_frequency` by the law that is judged,
-//! `displacement` and its derivative `velocity`, and what is said of them.
+//! What the program of an answer consists of, whatever the language: `angular_frequency` by the law
+//! that is judged, `displacement` and its derivative `velocity`, and what is said of them.
 
 use std::collections::BTreeSet;
 
@@ -69,7 +69,8 @@ pub(super) fn of_solution(
     match verification {
         Some(verification) if by_numbers => {
             let numbers = verification.motion.as_ref().zip(verification.frequency);
-            let no_motion = || NoCode::NoMotion(verification.reason.as_ref().map(ToString::to_string));
+            let no_motion =
+                || NoCode::NoMotion(verification.reason.as_ref().map(ToString::to_string));
             let (motion, frequency) = numbers.ok_or_else(no_motion)?;
             routines.extend(motion_in_numbers(&names, motion, frequency));
             let at: Vec<String> = verification
@@ -77,8 +78,15 @@ pub(super) fn of_solution(
                 .iter()
                 .map(|(name, value)| format!("{name} = {value}"))
                 .collect();
-            let what = if formula.is_err() { "Everything" } else { "The motion" };
-            remarks.push(format!("{what} is in numbers, which hold at {} alone.", at.join(", ")));
+            let what = if formula.is_err() {
+                "Everything"
+            } else {
+                "The motion"
+            };
+            remarks.push(format!(
+                "{what} is in numbers, which hold at {} alone.",
+                at.join(", ")
+            ));
         }
         None if by_numbers => {
             remarks.push(
@@ -227,7 +235,8 @@ fn ordered(solution: &Solution, polynomial: &Polynomial) -> Value {
     Value::Sum(sum.terms().map(term).collect())
 }
 
-/// What the symbols of a formula are: the definitions behind them, and the arguments, the amplitude first.
+/// What the symbols of a formula are: the definitions behind them, and the arguments, the amplitude
+/// first.
 fn resolved<'a>(
     solution: &'a Solution,
     names: &Names,
@@ -235,7 +244,11 @@ fn resolved<'a>(
 ) -> (Vec<&'a Definition>, Vec<Symbol>) {
     let definitions = solution.definitions_behind(symbols.clone());
     let mut all = symbols;
-    all.extend(definitions.iter().flat_map(|definition| definition.meaning.symbols()));
+    all.extend(
+        definitions
+            .iter()
+            .flat_map(|definition| definition.meaning.symbols()),
+    );
     for definition in &definitions {
         all.remove(&definition.symbol);
     }
@@ -246,18 +259,25 @@ fn resolved<'a>(
 }
 
 fn variables(definitions: Vec<&Definition>) -> impl Iterator<Item = Statement> + '_ {
-    let variable =
-        |definition: &Definition| Statement::Variable(definition.symbol, Value::Expression(definition.meaning.clone()));
+    let variable = |definition: &Definition| {
+        Statement::Variable(
+            definition.symbol,
+            Value::Expression(definition.meaning.clone()),
+        )
+    };
     definitions.into_iter().map(variable)
 }
 
-/// Whether an expression, with its definitions written out, keeps or changes its sign with the amplitude.
+/// Whether an expression, with its definitions written out, keeps or changes its sign with the
+/// amplitude.
 fn flips(solution: &Solution, expression: &Expr, negated: bool) -> bool {
     let amplitude = solution.amplitude.symbol();
     let written_out = |expression: &Expr| {
         let mut definitions = solution.definitions.iter().rev();
         definitions.try_fold(expression.clone(), |whole, definition| {
-            whole.substitute(definition.symbol, &definition.meaning).ok()
+            whole
+                .substitute(definition.symbol, &definition.meaning)
+                .ok()
         })
     };
     let turned = || {
@@ -282,7 +302,12 @@ fn frequency(oscillator: &Oscillator, solution: &Solution, names: &Names, law: &
     let result = match law.squared {
         true => {
             body.push(Statement::Variable(names.omega_squared, value));
-            body.extend(digits(names, [&law.expression], names.omega_squared, &Expr::one()));
+            body.extend(digits(
+                names,
+                [&law.expression],
+                names.omega_squared,
+                &Expr::one(),
+            ));
             body.push(Statement::Positive(
                 names.omega_squared,
                 names.omega_squared,
@@ -305,7 +330,9 @@ fn frequency(oscillator: &Oscillator, solution: &Solution, names: &Names, law: &
     Routine {
         name: FREQUENCY,
         about: match law.squared {
-            true => of_frequency("The angular frequency in radians per unit of time, the root of omega^2"),
+            true => of_frequency(
+                "The angular frequency in radians per unit of time, the root of omega^2",
+            ),
             false => "The angular frequency in radians per unit of time".to_owned(),
         },
         arguments,
@@ -338,7 +365,8 @@ fn wave(function: Function, k: usize, theta: Symbol) -> Value {
     Value::Expression(wave.unwrap_or_else(|_| Expr::zero()))
 }
 
-/// A harmonic: `k`, what stands before the cosine and what before the sine; nothing where that is zero.
+/// A harmonic: `k`, what stands before the cosine and what before the sine; nothing where that is
+/// zero.
 struct Harmonic {
     k: usize,
     cosine: Option<Value>,
@@ -349,12 +377,17 @@ struct Harmonic {
 fn terms(harmonics: Vec<Harmonic>, theta: Symbol) -> Vec<Value> {
     let mut terms = Vec::new();
     for harmonic in harmonics {
-        for (coefficient, function) in [(harmonic.cosine, Function::Cos), (harmonic.sine, Function::Sin)] {
+        for (coefficient, function) in [
+            (harmonic.cosine, Function::Cos),
+            (harmonic.sine, Function::Sin),
+        ] {
             match (coefficient, harmonic.k) {
                 (None, _) => {}
                 (Some(Value::Sum(parts)), 0) => terms.extend(parts),
                 (Some(coefficient), 0) => terms.push(coefficient),
-                (Some(coefficient), k) => terms.push(Value::Product(vec![coefficient, wave(function, k, theta)])),
+                (Some(coefficient), k) => {
+                    terms.push(Value::Product(vec![coefficient, wave(function, k, theta)]))
+                }
             }
         }
     }
@@ -367,7 +400,12 @@ struct Beginning {
     body: Vec<Statement>,
 }
 
-fn motion(oscillator: &Oscillator, solution: &Solution, names: &Names, of_frequency: &[Symbol]) -> [Routine; 2] {
+fn motion(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    names: &Names,
+    of_frequency: &[Symbol],
+) -> [Routine; 2] {
     let harmonics = solution.displacement.harmonics();
     let moving = harmonics.iter().filter(|entry| entry.0 > 0);
     let sign = sign_of_motion(oscillator, solution, names);
@@ -403,12 +441,15 @@ fn motion(oscillator: &Oscillator, solution: &Solution, names: &Names, of_freque
             &scale,
         ));
         body.push(match sign {
-            Sign::HalfPeriod => Statement::Variable(names.theta, Value::Expression(turned_angle(names))),
+            Sign::HalfPeriod => {
+                Statement::Variable(names.theta, Value::Expression(turned_angle(names)))
+            }
             Sign::Any | Sign::Opposite => angle(names),
         });
         Beginning { arguments, body }
     };
-    let symbols = |(_, cosine, sine): &(usize, Polynomial, Polynomial)| [cosine.symbols(), sine.symbols()];
+    let symbols =
+        |(_, cosine, sine): &(usize, Polynomial, Polynomial)| [cosine.symbols(), sine.symbols()];
     let all: BTreeSet<Symbol> = harmonics.iter().flat_map(symbols).flatten().collect();
     let beginnings = match sign {
         // What lets the turned motion begin at its amplitude is made of all harmonics.
@@ -460,12 +501,24 @@ fn motion(oscillator: &Oscillator, solution: &Solution, names: &Names, of_freque
         Sign::Opposite => Some(names.sign),
         _ => None,
     };
-    both(names, beginnings, before, displaced.collect(), moving.collect())
+    both(
+        names,
+        beginnings,
+        before,
+        displaced.collect(),
+        moving.collect(),
+    )
 }
 
 /// Displacement and velocity of a motion that is an expression in the time.
-fn written_motion(solution: &Solution, names: &Names, motion: &Expr) -> Result<[Routine; 2], NoCode> {
-    let velocity = motion.differentiate(names.time).map_err(|_| NoCode::NoMotion(None))?;
+fn written_motion(
+    solution: &Solution,
+    names: &Names,
+    motion: &Expr,
+) -> Result<[Routine; 2], NoCode> {
+    let velocity = motion
+        .differentiate(names.time)
+        .map_err(|_| NoCode::NoMotion(None))?;
     let routine = |name, about: &str, expression: &Expr| {
         let (definitions, mut arguments) = resolved(solution, names, expression.symbols());
         arguments.insert(0, names.time);
@@ -489,9 +542,14 @@ fn turned_angle(names: &Names) -> Expr {
     Expr::from(names.omega) * Expr::from(names.time) + (Expr::one() - Expr::from(names.sign)) * half
 }
 
-/// The coefficient of `cos(theta)` beside the first harmonic, for a negative amplitude: half a period later the even harmonics have kept
-/// their signs, and the motion begins at its amplitude with it.
-fn missing_at_start(solution: &Solution, names: &Names, harmonics: &[(usize, Polynomial, Polynomial)]) -> Expr {
+/// The coefficient of `cos(theta)` beside the first harmonic, for a negative amplitude: half a
+/// period later the even harmonics have kept their signs, and the motion begins at its amplitude
+/// with it.
+fn missing_at_start(
+    solution: &Solution,
+    names: &Names,
+    harmonics: &[(usize, Polynomial, Polynomial)],
+) -> Expr {
     let half = Expr::number(Rational::new(1.into(), 2.into()));
     let turned = harmonics.iter().map(|(k, cosine, _)| {
         let cosine = Expr::from(cosine);
@@ -517,7 +575,8 @@ fn both(
     moving: Vec<Harmonic>,
 ) -> [Routine; 2] {
     let before = before.map(|sign| Value::Expression(sign.into()));
-    let times = |factors: Vec<Value>| Value::Product(before.clone().into_iter().chain(factors).collect());
+    let times =
+        |factors: Vec<Value>| Value::Product(before.clone().into_iter().chain(factors).collect());
     let [mut displacement, mut velocity] = beginnings;
     let terms_of_displacement = Value::Lines(terms(displaced, names.theta));
     let result = match before {
@@ -589,7 +648,12 @@ fn sign_of_motion(oscillator: &Oscillator, solution: &Solution, names: &Names) -
     let turns = |polynomial: &Polynomial| flips(solution, &Expr::from(polynomial), true);
     let is_odd = is_odd_equation(oscillator) && solution.equilibrium.is_zero();
     match is_odd {
-        true if harmonics.iter().all(|entry| turns(&entry.1) && turns(&entry.2)) => Sign::Any,
+        true if harmonics
+            .iter()
+            .all(|entry| turns(&entry.1) && turns(&entry.2)) =>
+        {
+            Sign::Any
+        }
         true => Sign::Opposite,
         false => Sign::HalfPeriod,
     }
@@ -604,7 +668,11 @@ fn is_of_amplitude(solution: &Solution, symbol: Symbol, names: &Names) -> bool {
 }
 
 /// The motion at given values.
-fn motion_in_numbers(names: &Names, motion: &FourierSeries<Doubles>, frequency: f64) -> [Routine; 2] {
+fn motion_in_numbers(
+    names: &Names,
+    motion: &FourierSeries<Doubles>,
+    frequency: f64,
+) -> [Routine; 2] {
     let coefficients: Vec<(usize, f64, f64)> = (0..=motion.highest_harmonic())
         .map(|k| (k, motion.cosine(k).mean().0, motion.sine(k).mean().0))
         .collect();
@@ -625,7 +693,10 @@ fn motion_in_numbers(names: &Names, motion: &FourierSeries<Doubles>, frequency: 
         });
     let beginning = || Beginning {
         arguments: vec![names.time],
-        body: vec![Statement::Variable(names.omega, number(frequency)), angle(names)],
+        body: vec![
+            Statement::Variable(names.omega, number(frequency)),
+            angle(names),
+        ],
     };
     both(
         names,
@@ -636,8 +707,9 @@ fn motion_in_numbers(names: &Names, motion: &FourierSeries<Doubles>, frequency: 
     )
 }
 
-/// Ends a function where the terms of its formulas cancel and more than half of the digits of `value*scale` with them: as the
-/// amplitude goes to zero, several of them become infinite and their sum does not.
+/// Ends a function where the terms of its formulas cancel and more than half of the digits of
+/// `value*scale` with them: as the amplitude goes to zero, several of them become infinite and
+/// their sum does not.
 fn digits<'a>(
     names: &Names,
     formulas: impl IntoIterator<Item = &'a Expr>,
@@ -650,7 +722,9 @@ fn digits<'a>(
     let size = |formula: Expr| Expr::function(Function::Absolute, vec![formula]).ok();
     let mut sizes = Vec::new();
     for formula in formulas {
-        let Ok(written_out) = formula.expand() else { continue };
+        let Ok(written_out) = formula.expand() else {
+            continue;
+        };
         let infinite: Vec<&Expr> = written_out.terms().iter().filter(is_infinite).collect();
         if infinite.len() > 1 {
             sizes.extend(infinite.into_iter().filter_map(|term| size(term.clone())));
@@ -669,8 +743,8 @@ fn digits<'a>(
     ]
 }
 
-/// What a program does not look at and the numbers of an answer do: whether there is a motion, and whether the force is defined all
-/// along it.
+/// What a program does not look at and the numbers of an answer do: whether there is a motion, and
+/// whether the force is defined all along it.
 fn unseen(oscillator: &Oscillator, solution: &Solution) -> Option<String> {
     let in_parts = |part: &Expr| match part.node() {
         Node::Function(function, _) => {
@@ -694,7 +768,8 @@ fn unseen(oscillator: &Oscillator, solution: &Solution) -> Option<String> {
                 .to_owned(),
         );
     }
-    let has_gaps = law_takes_size(oscillator, solution) && oscillator.force.unique_nodes().any(in_parts);
+    let has_gaps =
+        law_takes_size(oscillator, solution) && oscillator.force.unique_nodes().any(in_parts);
     has_gaps.then(|| {
         format!(
             "The program does not look whether the force is defined and finite from -{AMPLITUDE} to {AMPLITUDE}: where it is not, its numbers mean nothing."
@@ -706,6 +781,9 @@ fn unseen(oscillator: &Oscillator, solution: &Solution) -> Option<String> {
 fn at_rest(solution: &Solution, law: &Law) -> Option<String> {
     let amplitude = solution.amplitude.symbol();
     let limit = law.expression.substitute(amplitude, &Expr::zero());
-    (law.expression.contains(amplitude) && limit.is_err())
-        .then(|| format!("At {amplitude} = 0 the formula has no value, and close to it rounding takes digits."))
+    (law.expression.contains(amplitude) && limit.is_err()).then(|| {
+        format!(
+            "At {amplitude} = 0 the formula has no value, and close to it rounding takes digits."
+        )
+    })
 }

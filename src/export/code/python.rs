@@ -7,19 +7,24 @@ pub(super) const SYNTAX: Syntax = Syntax {
     name: "python",
     comment: "#",
     reserved: &[
-        "False", "None", "True", "and", "as", "assert", "async", "await", "break", "class", "continue", "def", "del",
-        "elif", "else", "except", "finally", "for", "from", "global", "if", "import", "in", "is", "lambda", "nonlocal",
-        "not", "or", "pass", "raise", "return", "try", "while", "with", "yield", "abs", "copysign", "max", "min", "pi",
-        "pow", "sqrt",
+        "False", "None", "True", "and", "as", "assert", "async", "await", "break", "class",
+        "continue", "def", "del", "elif", "else", "except", "finally", "for", "from", "global",
+        "if", "import", "in", "is", "lambda", "nonlocal", "not", "or", "pass", "raise", "return",
+        "try", "while", "with", "yield", "abs", "copysign", "max", "min", "pi", "pow", "sqrt",
     ],
     point: "",
     pi: "pi",
     operators: ["*", "/"],
     between_values: ["*", "/"],
-    power: |Base { inside, operand, .. }, exponent| match exponent {
+    power: |Base {
+                inside, operand, ..
+            },
+            exponent| match exponent {
         Exponent::Whole(number) => format!("{operand}**{number}"),
         Exponent::Half => format!("sqrt({inside})"),
-        Exponent::OddRoot(number, true) => format!("copysign(pow(abs({inside}), {number}), {inside})"),
+        Exponent::OddRoot(number, true) => {
+            format!("copysign(pow(abs({inside}), {number}), {inside})")
+        }
         Exponent::OddRoot(number, false) => format!("pow(abs({inside}), {number})"),
         Exponent::Real(number) => format!("pow({inside}, {number})"),
     },
@@ -52,11 +57,12 @@ fn function(function: Function) -> &'static str {
     }
 }
 
-/// What is imported: `pow` of the module is a `ValueError` where the built-in one would be a complex number.
+/// What is imported: `pow` of the module is a `ValueError` where the built-in one would be a
+/// complex number.
 fn beginning(used: &Used) -> String {
     const MODULE: [&str; 18] = [
-        "acos", "asin", "asinh", "atan", "ceil", "copysign", "cos", "cosh", "exp", "gamma", "log", "pi", "pow", "sin",
-        "sinh", "sqrt", "tan", "tanh",
+        "acos", "asin", "asinh", "atan", "ceil", "copysign", "cos", "cosh", "exp", "gamma", "log",
+        "pi", "pow", "sin", "sinh", "sqrt", "tan", "tanh",
     ];
     let imported: Vec<&str> = MODULE.into_iter().filter(|name| used.has(name)).collect();
     match imported.is_empty() {

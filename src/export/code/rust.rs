@@ -7,10 +7,11 @@ pub(super) const SYNTAX: Syntax = Syntax {
     name: "rust",
     comment: "//!",
     reserved: &[
-        "as", "async", "await", "break", "const", "continue", "crate", "dyn", "else", "enum", "extern", "false", "fn",
-        "for", "if", "impl", "in", "let", "loop", "match", "mod", "move", "mut", "pub", "ref", "return", "self",
-        "Self", "static", "struct", "super", "trait", "true", "type", "unsafe", "use", "where", "while", "abstract",
-        "become", "box", "do", "final", "gen", "macro", "override", "priv", "try", "typeof", "unsized", "virtual",
+        "as", "async", "await", "break", "const", "continue", "crate", "dyn", "else", "enum",
+        "extern", "false", "fn", "for", "if", "impl", "in", "let", "loop", "match", "mod", "move",
+        "mut", "pub", "ref", "return", "self", "Self", "static", "struct", "super", "trait",
+        "true", "type", "unsafe", "use", "where", "while", "abstract", "become", "box", "do",
+        "final", "gen", "macro", "override", "priv", "try", "typeof", "unsized", "virtual",
         "yield", "f64", "PI", "_",
     ],
     point: ".0",
@@ -27,7 +28,9 @@ pub(super) const SYNTAX: Syntax = Syntax {
     },
     result: ["", ""],
     size: |name| format!("let {name} = {name}.abs();"),
-    positive: |name, _, reason| format!("if {name}.is_nan() || {name} <= 0.0 {{\n    return f64::NAN; // {reason}\n}}"),
+    positive: |name, _, reason| {
+        format!("if {name}.is_nan() || {name} <= 0.0 {{\n    return f64::NAN; // {reason}\n}}")
+    },
     breaks: Break::BeforeSigns,
     beginning,
     routine,
@@ -48,7 +51,9 @@ fn power(base: &Base, exponent: Exponent) -> String {
     match exponent {
         Exponent::Whole(number) => call("powi", number),
         Exponent::Half => call("sqrt", ""),
-        Exponent::OddRoot(number, true) => format!("{operand}.abs().powf({number}).copysign({inside})"),
+        Exponent::OddRoot(number, true) => {
+            format!("{operand}.abs().powf({number}).copysign({inside})")
+        }
         Exponent::OddRoot(number, false) => format!("{operand}.abs().powf({number})"),
         Exponent::Real(number) => call("powf", number),
     }
@@ -103,17 +108,26 @@ fn beginning(used: &Used) -> String {
         names.chars().any(|letter| letter.is_ascii_uppercase())
     };
     let capitals = signatures().any(name);
-    let allow = if capitals { "#![allow(non_snake_case)]\n\n" } else { "" };
+    let allow = if capitals {
+        "#![allow(non_snake_case)]\n\n"
+    } else {
+        ""
+    };
     let pi = if used.has("PI") {
         "use std::f64::consts::PI;\n\n"
     } else {
         ""
     };
-    format!("{allow}{pi}").trim_end_matches('\n').to_owned() + if capitals || !pi.is_empty() { "\n" } else { "" }
+    format!("{allow}{pi}").trim_end_matches('\n').to_owned()
+        + if capitals || !pi.is_empty() { "\n" } else { "" }
 }
 
 fn routine(text: &Text) -> String {
-    let arguments: Vec<String> = text.arguments.iter().map(|name| format!("{name}: f64")).collect();
+    let arguments: Vec<String> = text
+        .arguments
+        .iter()
+        .map(|name| format!("{name}: f64"))
+        .collect();
     let head = format!(
         "/// {}.\npub fn {}({}) -> f64 {{\n",
         text.about,
@@ -121,7 +135,10 @@ fn routine(text: &Text) -> String {
         arguments.join(", ")
     );
     let lines = text.lines.iter().map(|line| format!("    {line}\n"));
-    std::iter::once(head).chain(lines).chain(["}\n".to_owned()]).collect()
+    std::iter::once(head)
+        .chain(lines)
+        .chain(["}\n".to_owned()])
+        .collect()
 }
 
 fn helper(function: Function) -> Option<&'static str> {

@@ -4,7 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use num_traits::{One, Signed, Zero};
 
-use super::{Base, Break, Exponent, NoCode, Program, Routine, Statement, Syntax, Text, Used, Value, commented};
+use super::{
+    Base, Break, Exponent, NoCode, Program, Routine, Statement, Syntax, Text, Used, Value,
+    commented,
+};
 use crate::exact::Integer;
 use crate::exact::rational::{Rational, to_f64};
 use crate::expr::{Expr, Function, Node};
@@ -17,19 +20,30 @@ const WIDTH: usize = 100;
 pub(super) fn source(program: &Program, syntax: &'static Syntax) -> Result<String, NoCode> {
     let functions = functions(program);
     let names = names(program, syntax, &functions);
-    let writer = Writer { syntax, names: &names };
-    let helpers = functions.iter().filter_map(|function| (syntax.helper)(*function));
+    let writer = Writer {
+        syntax,
+        names: &names,
+    };
+    let helpers = functions
+        .iter()
+        .filter_map(|function| (syntax.helper)(*function));
     let mut parts: Vec<String> = helpers.map(str::to_owned).collect();
     for routine in &program.routines {
         parts.push(writer.routine(routine)?);
     }
     let text = parts.join("\n");
-    let routines: Vec<&str> = program.routines.iter().map(|routine| routine.name).collect();
+    let routines: Vec<&str> = program
+        .routines
+        .iter()
+        .map(|routine| routine.name)
+        .collect();
     let beginning = (syntax.beginning)(&Used {
         text: &text,
         routines: &routines,
     });
-    let renamed = names.iter().filter(|(symbol, name)| symbol.written() != **name);
+    let renamed = names
+        .iter()
+        .filter(|(symbol, name)| symbol.written() != **name);
     let renamed: Vec<String> = renamed
         .map(|(symbol, name)| format!("{symbol} is {name} here"))
         .collect();
@@ -38,7 +52,9 @@ pub(super) fn source(program: &Program, syntax: &'static Syntax) -> Result<Strin
         header.extend([String::new(), format!("{}.", renamed.join(", "))]);
     }
     let header = commented(&header.join("\n"), syntax.comment);
-    let parts = [header, beginning, text].into_iter().filter(|part| !part.is_empty());
+    let parts = [header, beginning, text]
+        .into_iter()
+        .filter(|part| !part.is_empty());
     let whole = parts.collect::<Vec<String>>().join("\n");
     Ok(whole.trim_end().to_owned() + "\n")
 }
@@ -65,7 +81,9 @@ fn expressions(program: &Program) -> Vec<&Expr> {
 
 /// The functions of the table that a program calls.
 fn functions(program: &Program) -> BTreeSet<Function> {
-    let nodes = expressions(program).into_iter().flat_map(Expr::unique_nodes);
+    let nodes = expressions(program)
+        .into_iter()
+        .flat_map(Expr::unique_nodes);
     let function = |expression: &Expr| match expression.node() {
         Node::Function(function, _) => Some(*function),
         _ => None,
@@ -81,21 +99,32 @@ fn functions(program: &Program) -> BTreeSet<Function> {
     functions
 }
 
-/// The name of every variable: its own, with underscores where that means something else in the language.
-fn names(program: &Program, syntax: &Syntax, functions: &BTreeSet<Function>) -> BTreeMap<Symbol, String> {
+/// The name of every variable: its own, with underscores where that means something else in the
+/// language.
+fn names(
+    program: &Program,
+    syntax: &Syntax,
+    functions: &BTreeSet<Function>,
+) -> BTreeMap<Symbol, String> {
     let variables = |routine: &Routine| {
         let locals = routine.body.iter().filter_map(|statement| match statement {
             Statement::Variable(name, _) => Some(*name),
             Statement::Size(_) | Statement::Positive(..) => None,
         });
-        locals.chain(routine.arguments.iter().copied()).collect::<Vec<Symbol>>()
+        locals
+            .chain(routine.arguments.iter().copied())
+            .collect::<Vec<Symbol>>()
     };
     let symbols: BTreeSet<Symbol> = program.routines.iter().flat_map(variables).collect();
     let called: Vec<&str> = functions
         .iter()
         .map(|function| (syntax.function)(*function))
         .chain(program.routines.iter().map(|routine| routine.name))
-        .chain(functions.contains(&Function::JacobiSn).then_some("jacobi_functions"))
+        .chain(
+            functions
+                .contains(&Function::JacobiSn)
+                .then_some("jacobi_functions"),
+        )
         .collect();
     let mut names: BTreeMap<Symbol, String> = BTreeMap::new();
     for symbol in &symbols {
@@ -103,7 +132,9 @@ fn names(program: &Program, syntax: &Syntax, functions: &BTreeSet<Function>) -> 
             called.contains(&name.as_str())
                 || syntax.reserved.contains(&name.as_str())
                 || names.values().any(|other| other == name)
-                || symbols.iter().any(|other| other != symbol && other.written() == name)
+                || symbols
+                    .iter()
+                    .any(|other| other != symbol && other.written() == name)
         };
         let mut name = symbol.written().to_owned();
         while taken(&name) {
@@ -201,14 +232,19 @@ impl Writer<'_> {
                 }
                 Statement::Size(name) => lines.push((self.syntax.size)(&self.name(*name))),
                 Statement::Positive(name, spoilt, reason) => {
-                    let condition = (self.syntax.positive)(&self.name(*name), &self.name(*spoilt), reason);
+                    let condition =
+                        (self.syntax.positive)(&self.name(*name), &self.name(*spoilt), reason);
                     lines.extend(condition.lines().map(str::to_owned));
                 }
             }
         }
         let [before, after] = self.syntax.result;
         lines.extend(self.lines(before, &routine.result, after)?);
-        let arguments: Vec<String> = routine.arguments.iter().map(|name| self.name(*name)).collect();
+        let arguments: Vec<String> = routine
+            .arguments
+            .iter()
+            .map(|name| self.name(*name))
+            .collect();
         Ok((self.syntax.routine)(&Text {
             name: routine.name,
             about: &routine.about,
@@ -246,7 +282,11 @@ impl Writer<'_> {
                         (_, false) => "+ ",
                         (_, true) => "- ",
                     };
-                    let level = if index == 0 { Level::Sum } else { Level::Product };
+                    let level = if index == 0 {
+                        Level::Sum
+                    } else {
+                        Level::Product
+                    };
                     parts.push(format!("{sign}{}", unsigned.at(level)));
                 }
                 parts
@@ -269,11 +309,17 @@ impl Writer<'_> {
         match value {
             Value::Expression(expression) => self.expression(expression),
             Value::Sum(parts) | Value::Lines(parts) => {
-                let parts: Vec<Piece> = parts.iter().map(|part| self.value(part)).collect::<Result<_, _>>()?;
+                let parts: Vec<Piece> = parts
+                    .iter()
+                    .map(|part| self.value(part))
+                    .collect::<Result<_, _>>()?;
                 Ok(self.sum(&parts))
             }
             Value::Product(parts) => {
-                let parts: Vec<Piece> = parts.iter().map(|part| self.value(part)).collect::<Result<_, _>>()?;
+                let parts: Vec<Piece> = parts
+                    .iter()
+                    .map(|part| self.value(part))
+                    .collect::<Result<_, _>>()?;
                 let negative = parts.iter().filter(|part| part.negative).count() % 2 == 1;
                 let unsigned = parts.into_iter().map(|part| Piece {
                     negative: false,
@@ -289,15 +335,24 @@ impl Writer<'_> {
                     },
                     ..first.clone()
                 });
-                let factors = first.into_iter().chain(factors.into_iter().skip(1)).collect();
+                let factors = first
+                    .into_iter()
+                    .chain(factors.into_iter().skip(1))
+                    .collect();
                 Ok(Piece {
                     negative,
                     ..self.fraction(factors, vec![])
                 })
             }
             Value::Call(name, arguments) => {
-                let arguments: Vec<String> = arguments.iter().map(|argument| self.name(*argument)).collect();
-                Ok(Piece::new(format!("{name}({})", arguments.join(", ")), Level::Atom))
+                let arguments: Vec<String> = arguments
+                    .iter()
+                    .map(|argument| self.name(*argument))
+                    .collect();
+                Ok(Piece::new(
+                    format!("{name}({})", arguments.join(", ")),
+                    Level::Atom,
+                ))
             }
         }
     }
@@ -336,7 +391,8 @@ impl Writer<'_> {
                 }
                 (Some(number), [written, _]) => self.power(base, written, number)?,
                 (None, [base, exponent]) => {
-                    let text = (self.syntax.power)(&base.as_base(), Exponent::Real(&exponent.whole()));
+                    let text =
+                        (self.syntax.power)(&base.as_base(), Exponent::Real(&exponent.whole()));
                     Piece::new(text, Level::Power)
                 }
                 _ => Piece::new(String::new(), Level::Atom),
@@ -352,8 +408,12 @@ impl Writer<'_> {
         };
         let text = match (name.strip_prefix('.'), arguments) {
             // A number written out has no type of which it would be a method.
-            (Some(method), [first, ..]) if first.literal => format!("f64::{method}({})", written(arguments)),
-            (Some(method), [first, rest @ ..]) => format!("{}.{method}({})", first.at(Level::Atom), written(rest)),
+            (Some(method), [first, ..]) if first.literal => {
+                format!("f64::{method}({})", written(arguments))
+            }
+            (Some(method), [first, rest @ ..]) => {
+                format!("{}.{method}({})", first.at(Level::Atom), written(rest))
+            }
             _ => format!("{name}({})", written(arguments)),
         };
         Piece::new(text, Level::Atom)
@@ -379,7 +439,10 @@ impl Writer<'_> {
             Exponent::Half => Level::Atom,
             _ => Level::Power,
         };
-        Ok(Piece::new((self.syntax.power)(&written.as_base(), exponent), level))
+        Ok(Piece::new(
+            (self.syntax.power)(&written.as_base(), exponent),
+            level,
+        ))
     }
 
     /// A sum of pieces, which has at least one.
@@ -393,7 +456,11 @@ impl Writer<'_> {
                 negative: false,
                 ..term.clone()
             };
-            let level = if text.is_empty() { Level::Sum } else { Level::Product };
+            let level = if text.is_empty() {
+                Level::Sum
+            } else {
+                Level::Product
+            };
             text.push_str(match (text.is_empty(), term.negative) {
                 (true, true) => "-",
                 (true, false) => "",
@@ -413,7 +480,12 @@ impl Writer<'_> {
 
     /// Factors over factors.
     fn fraction(&self, above: Vec<Piece>, below: Vec<Piece>) -> Piece {
-        let one = || vec![Piece::literal(format!("1{}", self.syntax.point), Level::Atom)];
+        let one = || {
+            vec![Piece::literal(
+                format!("1{}", self.syntax.point),
+                Level::Atom,
+            )]
+        };
         let above = if above.is_empty() { one() } else { above };
         let numerator = self.product(&above);
         match below.as_slice() {
@@ -451,7 +523,8 @@ impl Writer<'_> {
                 _ => first.clone(),
             };
         }
-        let (mut text, mut literal, mut last) = (first.at(Level::Power), first.literal, first.literal);
+        let (mut text, mut literal, mut last) =
+            (first.at(Level::Power), first.literal, first.literal);
         for factor in rest {
             let next = factor.at(Level::Power);
             text = self.joined(0, (&text, last), (&next, factor.literal));
@@ -464,7 +537,8 @@ impl Writer<'_> {
         }
     }
 
-    /// Two operands with the sign of a product or a quotient between them, and whether each is a number written out.
+    /// Two operands with the sign of a product or a quotient between them, and whether each is a
+    /// number written out.
     fn joined(&self, operator: usize, left: (&str, bool), right: (&str, bool)) -> String {
         let between_values = match operator {
             0 => !left.1 && !right.1,
@@ -487,7 +561,8 @@ impl Writer<'_> {
         })
     }
 
-    /// The size of a number, what stands above and below the line; one of many digits is a decimal, which stands above.
+    /// The size of a number, what stands above and below the line; one of many digits is a decimal,
+    /// which stands above.
     fn number_parts(&self, value: &Rational) -> Result<(Option<Piece>, Option<Piece>), NoCode> {
         /// All of them a double tells apart.
         const DIGITS: usize = 15;
@@ -516,7 +591,8 @@ fn decimal(value: f64) -> String {
     }
 }
 
-/// Terms as they are read: where those with a minus come first, those next without one stand before them.
+/// Terms as they are read: where those with a minus come first, those next without one stand before
+/// them.
 fn positive_first(terms: &[Piece]) -> Vec<Piece> {
     let minus = terms.iter().take_while(|term| term.negative).count();
     let (minus, others) = terms.split_at(minus);

@@ -16,7 +16,10 @@ impl Default for Typesetter {
 impl Typesetter {
     /// Rows of `align*`, one below the other.
     pub(super) fn display(&self, rows: &[String]) -> String {
-        let together = format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}", rows.join(" \\\\\n"));
+        let together = format!(
+            "\\begin{{aligned}}\n{}\n\\end{{aligned}}",
+            rows.join(" \\\\\n")
+        );
         let set = self
             .set(&together, MathDisplay::Block)
             .unwrap_or_else(|| rows.iter().map(|row| unset(row) + "<br>\n").collect());
@@ -25,7 +28,8 @@ impl Typesetter {
 
     /// A formula in a line.
     pub(super) fn inline(&self, formula: &str) -> String {
-        self.set(formula, MathDisplay::Inline).unwrap_or_else(|| unset(formula))
+        self.set(formula, MathDisplay::Inline)
+            .unwrap_or_else(|| unset(formula))
     }
 
     /// LaTeX of running text with formulas between dollars.
@@ -43,18 +47,27 @@ impl Typesetter {
 
     fn set(&self, formula: &str, display: MathDisplay) -> Option<String> {
         let formula = words_apart(formula);
-        let set = self.0.as_ref()?.convert_with_local_counter(&formula, display).ok()?;
+        let set = self
+            .0
+            .as_ref()?
+            .convert_with_local_counter(&formula, display)
+            .ok()?;
         // As indices they are shrunk once more by fonts that have them small already.
-        Some(["\u{2032}", "\u{2033}", "\u{2034}"].iter().fold(set, |set, primes| {
-            set.replace(
-                &format!("<mo>{primes}</mo>"),
-                &format!("<mo class=\"primes\">{primes}</mo>"),
-            )
-        }))
+        Some(
+            ["\u{2032}", "\u{2033}", "\u{2034}"]
+                .iter()
+                .fold(set, |set, primes| {
+                    set.replace(
+                        &format!("<mo>{primes}</mo>"),
+                        &format!("<mo class=\"primes\">{primes}</mo>"),
+                    )
+                }),
+        )
     }
 }
 
-/// A formula whose words hold no formulas: `\text{no $a$ in $b$}` becomes `\text{no }a\text{ in }b`.
+/// A formula whose words hold no formulas: `\text{no $a$ in $b$}` becomes
+/// `\text{no }a\text{ in }b`.
 fn words_apart(formula: &str) -> String {
     let mut apart = String::with_capacity(formula.len());
     let (mut inside, mut before) = (false, ' ');
@@ -111,7 +124,8 @@ fn pieces(text: &str) -> Vec<String> {
     pieces
 }
 
-/// A number, or a sign alone, that needs no formula: it can be copied as it is printed by every other format.
+/// A number, or a sign alone, that needs no formula: it can be copied as it is printed by every
+/// other format.
 fn number(formula: &str) -> Option<String> {
     if let "<" | ">" = formula {
         return Some(escaped(formula));

@@ -23,7 +23,11 @@ pub(super) fn definitions(class: &str, entries: &[(impl AsRef<str>, String)]) ->
     };
     let entry = |(name, words): &(_, String)| {
         let name: &str = AsRef::as_ref(name);
-        format!("<dt>{}</dt><dd>{}</dd>\n", escaped(name), verdict(&escaped(words)))
+        format!(
+            "<dt>{}</dt><dd>{}</dd>\n",
+            escaped(name),
+            verdict(&escaped(words))
+        )
     };
     let entries: String = entries.iter().map(entry).collect();
     format!("<dl{class}>\n{entries}</dl>\n")

@@ -29,7 +29,10 @@ pub struct AuditDocument {
 /// How many claims have each verdict.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditCounts"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "AuditCounts")
+)]
 pub struct Counts {
     /// Reproduced to every printed digit.
     pub reproduced: usize,
@@ -44,7 +47,10 @@ pub struct Counts {
 /// One claim.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditClaim"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "AuditClaim")
+)]
 pub struct Claim {
     /// Its name in the file.
     pub id: String,
@@ -54,7 +60,8 @@ pub struct Claim {
     pub says: String,
     /// What is printed, in one line; empty where that is no text.
     pub printed: String,
-    /// What is computed, in one line, with the assumption where there is one; empty where nothing is.
+    /// What is computed, in one line, with the assumption where there is one; empty where nothing
+    /// is.
     pub computed: String,
     /// The verdict.
     #[cfg_attr(feature = "schema", schemars(schema_with = "verdicts"))]
@@ -65,7 +72,8 @@ pub struct Claim {
     pub missing: Vec<String>,
     /// Why the verdict is what it is, sentence by sentence.
     pub evidence: Vec<String>,
-    /// The verdict that the file expects; null where it says nothing, and the claim is expected to be reproduced.
+    /// The verdict that the file expects; null where it says nothing, and the claim is expected to
+    /// be reproduced.
     pub expected: Option<String>,
     /// Whether the verdict is the expected one.
     pub as_expected: bool,
@@ -82,7 +90,10 @@ pub struct Claim {
 /// One thing that is printed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditEntry"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "AuditEntry")
+)]
 pub struct Entry {
     /// As it is printed.
     pub printed: String,
@@ -97,7 +108,10 @@ pub struct Entry {
 /// The claim under some suppositions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditTried"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "AuditTried")
+)]
 pub struct Tried {
     /// What is supposed; empty for the claim alone.
     pub supposing: Vec<String>,
@@ -110,7 +124,10 @@ pub struct Tried {
 /// What a claim asks of a number that is not printed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditUnknown"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "AuditUnknown")
+)]
 pub struct Unknown {
     /// Its name.
     pub name: String,
@@ -156,7 +173,11 @@ pub fn audit(audit: &Audit) -> AuditDocument {
 }
 
 fn number(found: &Result<Computed, crate::audit::Lack>) -> Option<f64> {
-    found.as_ref().ok()?.number().filter(|number| number.is_finite())
+    found
+        .as_ref()
+        .ok()?
+        .number()
+        .filter(|number| number.is_finite())
 }
 
 fn claim(finding: &Finding) -> Claim {
@@ -166,7 +187,8 @@ fn claim(finding: &Finding) -> Claim {
         printed: printed.printed.clone(),
         computed: shown.and_then(|tried| audit_entry(finding, tried, index)),
         value: shown.and_then(|tried| number(tried.computed.get(index)?)),
-        reproduced: shown.is_some_and(|tried| tried.reproduced.get(index).is_some_and(|entry| *entry)),
+        reproduced: shown
+            .is_some_and(|tried| tried.reproduced.get(index).is_some_and(|entry| *entry)),
     };
     let tried = |tried: &TriedClaim| Tried {
         supposing: tried.supposing.iter().map(ToString::to_string).collect(),

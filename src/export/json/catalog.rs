@@ -32,7 +32,8 @@ pub struct Entry {
     pub equation: String,
     /// Where it is studied.
     pub source: String,
-    /// The law as its source prints it, `omega = ... + ...` or `omega^2 = ... + ...`; null where none is printed.
+    /// The law as its source prints it, `omega = ... + ...` or `omega^2 = ... + ...`; null where
+    /// none is printed.
     pub published: Option<String>,
     /// Every method, and whether it applies.
     pub methods: Vec<Applicability>,
@@ -44,7 +45,10 @@ pub struct Entry {
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Applicability {
     /// The method, by its name on the command line.
-    #[cfg_attr(feature = "schema", schemars(schema_with = "super::generated_schema::methods"))]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(schema_with = "super::generated_schema::methods")
+    )]
     pub method: String,
     /// Whether it applies.
     pub applies: bool,
@@ -66,20 +70,24 @@ pub fn catalog() -> CatalogDocument {
 }
 
 fn entry(entry: &catalog::Entry) -> Entry {
-    let applicability = |(method, result): (crate::solution::Method, Result<(), crate::method::Refusal>)| {
-        let reason = result.err().map(|refusal| refusal.to_string());
-        Applicability {
-            method: method.name().to_owned(),
-            applies: reason.is_none(),
-            reason,
-        }
-    };
+    let applicability =
+        |(method, result): (crate::solution::Method, Result<(), crate::method::Refusal>)| {
+            let reason = result.err().map(|refusal| refusal.to_string());
+            Applicability {
+                method: method.name().to_owned(),
+                applies: reason.is_none(),
+                reason,
+            }
+        };
     Entry {
         name: entry.name.to_owned(),
         title: entry.title.to_owned(),
         equation: entry.equation.to_owned(),
         source: entry.source.to_owned(),
         published: entry.published.map(|published| published.to_string()),
-        methods: catalog::methods(entry).into_iter().map(applicability).collect(),
+        methods: catalog::methods(entry)
+            .into_iter()
+            .map(applicability)
+            .collect(),
     }
 }

@@ -1,7 +1,8 @@
 //! Kind `certificate`: numbers from which a motion, and the error of a formula, can be proved.
 //!
-//! Every number is text, an integer or a fraction: a program with whole numbers of any length checks a certificate without a
-//! single rounded operation. A reader treats what it reads as hostile, and so does [`CertificateDocument::read`].
+//! Every number is text, an integer or a fraction: a program with whole numbers of any length
+//! checks a certificate without a single rounded operation. A reader treats what it reads as
+//! hostile, and so does [`CertificateDocument::read`].
 
 use num_traits::Zero as _;
 #[cfg(feature = "schema")]
@@ -26,8 +27,8 @@ const LONGEST_VALUES: usize = 10_000;
 /// A force has at most so many.
 const LONGEST_FORCE: usize = 2000;
 
-/// Numbers from which a motion of `x'' + f(x) = 0` can be proved, and how far a formula for it is off. All numbers are text: integers,
-/// fractions such as `-1/6`, decimals such as `2.5e-33`.
+/// Numbers from which a motion of `x'' + f(x) = 0` can be proved, and how far a formula for it is
+/// off. All numbers are text: integers, fractions such as `-1/6`, decimals such as `2.5e-33`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -58,8 +59,8 @@ pub struct CertificateDocument {
     /// The entries of `A_block` are integers times 2^-Abits; at most 224.
     #[serde(rename = "Abits")]
     pub inverse_bits: usize,
-    /// The approximate inverse of the derivative on mu and the c_k of the block, row by row; the first row is that of mu, the first
-    /// column that of the condition x(0) = A.
+    /// The approximate inverse of the derivative on mu and the c_k of the block, row by row; the
+    /// first row is that of mu, the first column that of the condition x(0) = A.
     #[serde(rename = "A_block")]
     pub inverse: Vec<Vec<String>>,
     /// The norm is sigma |mu| + sum |c_k|, sigma = 2^sigma_log2.
@@ -88,16 +89,22 @@ pub enum ForceDocument {
     Expression(String),
 }
 
-/// A formula `x~(t) = X~(omega~ t)` with its numbers, and what is proved of them, each from below and from above.
+/// A formula `x~(t) = X~(omega~ t)` with its numbers, and what is proved of them, each from below
+/// and from above.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "CertificateFormula"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "CertificateFormula")
+)]
 pub struct FormulaDocument {
-    /// The law as it was derived: `omega = ...` or `omega^2 = ...` with definitions of letters behind commas, which has to give `omega` at `values`
-    /// to its last digits. What is of another form is words: nothing is checked against them.
+    /// The law as it was derived: `omega = ...` or `omega^2 = ...` with definitions of letters
+    /// behind commas, which has to give `omega` at `values` to its last digits. What is of another
+    /// form is words: nothing is checked against them.
     pub law: String,
-    /// The values of the letters in the law, such as `A = 3/2, k = pi/5`; A is x(0) less a place of rest.
+    /// The values of the letters in the law, such as `A = 3/2, k = pi/5`; A is x(0) less a place of
+    /// rest.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub values: String,
     /// omega~, an integer times 2^-bits.
@@ -167,7 +174,10 @@ fn short(value: &Rational, side: usize) -> String {
 
 /// The values of letters as text.
 pub(super) fn values(values: &Values) -> String {
-    let equations: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    let equations: Vec<String> = values
+        .iter()
+        .map(|(name, value)| format!("{name} = {value}"))
+        .collect();
     equations.join(", ")
 }
 
@@ -212,7 +222,9 @@ pub(super) fn force(force: &Expr) -> ForceDocument {
         Some(coefficients)
     });
     match coefficients {
-        Some(coefficients) => ForceDocument::Polynomial(coefficients.iter().map(ToString::to_string).collect()),
+        Some(coefficients) => {
+            ForceDocument::Polynomial(coefficients.iter().map(ToString::to_string).collect())
+        }
         None => match force.to_string() {
             text if text == "sin(x)" => ForceDocument::Expression("sin".to_owned()),
             text => ForceDocument::Expression(text),
@@ -230,7 +242,12 @@ impl CertificateDocument {
         if self.ode != EQUATION {
             return unexpected("ode", "`x''+f(x)=0`");
         }
-        check_sizes(&self.nu, self.highest, &self.inverse, [self.bits, self.inverse_bits])?;
+        check_sizes(
+            &self.nu,
+            self.highest,
+            &self.inverse,
+            [self.bits, self.inverse_bits],
+        )?;
         Ok(Certificate {
             force: self.f.read("f")?,
             start: fraction(&self.start, "A")?,
@@ -243,7 +260,11 @@ impl CertificateDocument {
             inverse: matrix(&self.inverse)?,
             sigma: self.sigma_log2,
             claim: decimal(&self.claim_r, "claim_r")?,
-            formula: self.formula.as_ref().map(FormulaDocument::read).transpose()?,
+            formula: self
+                .formula
+                .as_ref()
+                .map(FormulaDocument::read)
+                .transpose()?,
         })
     }
 }
@@ -260,7 +281,10 @@ pub(super) fn check_sizes(
     }
     let fits = highest <= HIGHEST_HARMONIC && inverse.len() <= HIGHEST_HARMONIC + 2;
     if !fits || inverse.iter().any(|row| row.len() > HIGHEST_HARMONIC + 2) {
-        return unexpected("K", "at most 400, and `A_block` a square matrix of this size");
+        return unexpected(
+            "K",
+            "at most 400, and `A_block` a square matrix of this size",
+        );
     }
     if bits.iter().any(|bits| *bits > MOST_BITS) {
         return unexpected("bits", "at most 224, and so `Abits`");
@@ -298,7 +322,9 @@ impl ForceDocument {
     pub(super) fn read(&self, key: &str) -> Result<Expr, JsonError> {
         let x = Expr::from(coordinate());
         match self {
-            Self::Expression(text) if text == "sin" => x.sin().or_else(|_| unexpected(key, "an expression in x")),
+            Self::Expression(text) if text == "sin" => {
+                x.sin().or_else(|_| unexpected(key, "an expression in x"))
+            }
             Self::Expression(text) if text.len() > LONGEST_FORCE => {
                 unexpected(key, "an expression of at most 2000 characters")
             }
@@ -312,7 +338,8 @@ impl ForceDocument {
                     let power = power.or_else(|_| unexpected(key, "a polynomial"))?;
                     Ok(&Expr::number(fraction(text, key)?) * &power)
                 };
-                let terms: Result<Vec<Expr>, JsonError> = coefficients.iter().enumerate().map(term).collect();
+                let terms: Result<Vec<Expr>, JsonError> =
+                    coefficients.iter().enumerate().map(term).collect();
                 Ok(Expr::sum(terms?))
             }
         }
@@ -335,7 +362,10 @@ pub(super) fn integer(text: &str, key: &str) -> Result<Integer, JsonError> {
 pub(super) fn fraction(text: &str, key: &str) -> Result<Rational, JsonError> {
     let number = Some(text).filter(|text| text.len() <= LONGEST_NUMBER);
     let number = number.and_then(|text| text.parse().ok());
-    number.map_or_else(|| unexpected(key, "a fraction of at most 200 characters"), Ok)
+    number.map_or_else(
+        || unexpected(key, "a fraction of at most 200 characters"),
+        Ok,
+    )
 }
 
 /// A decimal, `2.5e-33`, that is not negative.
@@ -348,8 +378,13 @@ pub(super) fn decimal(text: &str, key: &str) -> Result<Rational, JsonError> {
     }
     let (digits, exponent) = text.split_once('e').unwrap_or((text, "0"));
     let (whole, decimals) = digits.split_once('.').unwrap_or((digits, ""));
-    let exponent = exponent.parse().ok().filter(|exponent| EXPONENTS.contains(exponent));
-    let plain = (whole.to_owned() + decimals).bytes().all(|byte| byte.is_ascii_digit());
+    let exponent = exponent
+        .parse()
+        .ok()
+        .filter(|exponent| EXPONENTS.contains(exponent));
+    let plain = (whole.to_owned() + decimals)
+        .bytes()
+        .all(|byte| byte.is_ascii_digit());
     let count: Option<Integer> = (whole.to_owned() + decimals)
         .parse()
         .ok()

@@ -11,7 +11,8 @@ use crate::solution::Degrees;
 use crate::verify::comparison::{Comparison, Refused, Row};
 use crate::verify::{Verdict, validity};
 
-/// Every method on one equation at given values, beside the true motion of the equation as it was typed.
+/// Every method on one equation at given values, beside the true motion of the equation as it was
+/// typed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -19,7 +20,8 @@ pub struct ComparisonDocument {
     /// The kind of document.
     #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Comparison.schema())))]
     pub schema: String,
-    /// The equation of motion as it was understood, `... = 0`; time is its own, so frequencies are in radians per unit of it.
+    /// The equation of motion as it was understood, `... = 0`; time is its own, so frequencies are
+    /// in radians per unit of it.
     pub equation: String,
     /// The values of parameters and amplitude at which the methods are judged.
     pub at: Map<Constant>,
@@ -52,18 +54,24 @@ pub enum MethodRow {
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ApplyingRow {
     /// The method, by its name on the command line.
-    #[cfg_attr(feature = "schema", schemars(schema_with = "super::generated_schema::methods"))]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(schema_with = "super::generated_schema::methods")
+    )]
     pub method: String,
-    /// The highest power kept of the small parameter, inclusive; for a balance the number of harmonics, for iterations the passes.
+    /// The highest power kept of the small parameter, inclusive; for a balance the number of
+    /// harmonics, for iterations the passes.
     pub order: u32,
-    /// The degrees of an approximant, of numerator and denominator or of P, Q and R; null for every other method.
+    /// The degrees of an approximant, of numerator and denominator or of P, Q and R; null for every
+    /// other method.
     pub degrees: Option<Vec<u32>>,
     /// Whether the method applies.
     #[cfg_attr(feature = "schema", schemars(extend("const" = true)))]
     pub applies: bool,
     /// Why there is no frequency at these values, in words; null where there is one.
     pub reason: Option<String>,
-    /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as they were solved for.
+    /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as
+    /// they were solved for.
     pub chosen: Map<f64>,
     /// The law as text, with the definitions that it needs.
     pub formula: String,
@@ -71,11 +79,14 @@ pub struct ApplyingRow {
     pub frequency: Option<f64>,
     /// frequency / true_frequency - 1, signed, as a fraction; null where one of them is not known.
     pub relative_error: Option<f64>,
-    /// The largest |x - x_true| over one true period in real time, as a fraction of the amplitude; null where it is not known.
+    /// The largest |x - x_true| over one true period in real time, as a fraction of the amplitude;
+    /// null where it is not known.
     pub max_deviation: Option<f64>,
-    /// The range of the amplitude of the table's first row in which the error stays within the tolerance; null where it is not known.
+    /// The range of the amplitude of the table's first row in which the error stays within the
+    /// tolerance; null where it is not known.
     pub reach: Option<Reach>,
-    /// Whether |relative_error| is within the tolerance; null where the true frequency is not known.
+    /// Whether |relative_error| is within the tolerance; null where the true frequency is not
+    /// known.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name(), null])))]
     pub verdict: Option<String>,
 }
@@ -86,7 +97,10 @@ pub struct ApplyingRow {
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct RefusedRow {
     /// The method, by its name on the command line.
-    #[cfg_attr(feature = "schema", schemars(schema_with = "super::generated_schema::methods"))]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(schema_with = "super::generated_schema::methods")
+    )]
     pub method: String,
     /// Null.
     pub order: (),
@@ -114,13 +128,14 @@ pub struct RefusedRow {
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Reach {
-    /// The size of the amplitude from which on the error stays within the tolerance, for motions over several wells, which begin at the
-    /// separatrix; null for those that begin at rest.
+    /// The size of the amplitude from which on the error stays within the tolerance, for motions
+    /// over several wells, which begin at the separatrix; null for those that begin at rest.
     pub from: Option<f64>,
-    /// The size of the amplitude at which the error first crosses the tolerance, in the unit of the coordinate, 0 where it does so
-    /// at once; null where no crossing was found.
+    /// The size of the amplitude at which the error first crosses the tolerance, in the unit of the
+    /// coordinate, 0 where it does so at once; null where no crossing was found.
     pub up_to: Option<f64>,
-    /// The size of the amplitude up to which was searched, where no crossing was found; null where one was.
+    /// The size of the amplitude up to which was searched, where no crossing was found; null where
+    /// one was.
     pub searched: Option<f64>,
 }
 
@@ -145,7 +160,9 @@ pub fn comparison(comparison: &Comparison) -> ComparisonDocument {
         true_frequency: finite(comparison.true_frequency),
         reason: comparison.reason.as_ref().map(ToString::to_string),
         tolerance: comparison.tolerance,
-        methods: applying.chain(comparison.refused.iter().map(refused)).collect(),
+        methods: applying
+            .chain(comparison.refused.iter().map(refused))
+            .collect(),
         validity: comparison.validity.clone(),
     }
 }
@@ -186,7 +203,9 @@ fn reach(reach: validity::Reach) -> Reach {
     let searched = match reach {
         validity::Reach::Everywhere(searched) => Some(searched),
         validity::Reach::Between { to, open: true, .. } => Some(to),
-        validity::Reach::Between { .. } | validity::Reach::UpTo(_) | validity::Reach::Nowhere => None,
+        validity::Reach::Between { .. } | validity::Reach::UpTo(_) | validity::Reach::Nowhere => {
+            None
+        }
     };
     let from = match reach {
         validity::Reach::Between { from, .. } => Some(from),

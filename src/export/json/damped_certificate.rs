@@ -1,14 +1,16 @@
-//! Kind `certificate`, of a limit cycle or a driven motion: numbers from which it, and the error of a formula, can be proved.
+//! Kind `certificate`, of a limit cycle or a driven motion: numbers from which it, and the error of
+//! a formula, can be proved.
 //!
-//! Every number is text, as in the certificate of a conservative motion, from which it is told by `ode`.
+//! Every number is text, as in the certificate of a conservative motion, from which it is told by
+//! `ode`.
 
 #[cfg(feature = "schema")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::certificate::{
-    ForceDocument, check_sizes, claim, claims, decimal, force, fraction, integer, integers, matrix, range, read_values,
-    texts, values,
+    ForceDocument, check_sizes, claim, claims, decimal, force, fraction, integer, integers, matrix,
+    range, read_values, texts, values,
 };
 use super::schema::check_kind;
 use super::{JsonError, Kind, unexpected};
@@ -18,12 +20,13 @@ use crate::exact::Rational;
 /// What `ode` of a certificate of a limit cycle has.
 pub const EQUATION_OF_CYCLES: &str = "x''+g(x)*x'+h(x)=0";
 
-/// What `ode` of a certificate of a driven motion has; c and s are `cos(Omega t)` and `sin(Omega t)`.
+/// What `ode` of a certificate of a driven motion has; c and s are `cos(Omega t)` and
+/// `sin(Omega t)`.
 pub const EQUATION_WITH_DRIVE: &str = "x''+g(x)*x'+h(x,c,s)=0";
 
-/// Numbers from which a limit cycle of `x'' + g(x) x' + h(x) = 0` can be proved, or a steady motion with a drive in h, and how far a formula
-/// for it is off. All numbers are text: integers, fractions such as `-1/6`, decimals such as `2.5e-33`. The first harmonic of a
-/// cycle has no sine.
+/// Numbers from which a limit cycle of `x'' + g(x) x' + h(x) = 0` can be proved, or a steady motion
+/// with a drive in h, and how far a formula for it is off. All numbers are text: integers,
+/// fractions such as `-1/6`, decimals such as `2.5e-33`. The first harmonic of a cycle has no sine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -35,14 +38,17 @@ pub struct DampedCertificateDocument {
     /// The equation that g and h belong to.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = [EQUATION_OF_CYCLES, EQUATION_WITH_DRIVE])))]
     pub ode: String,
-    /// The damping by velocity: the coefficients of a polynomial by rising power of x, or an expression in x.
+    /// The damping by velocity: the coefficients of a polynomial by rising power of x, or an
+    /// expression in x.
     pub g: ForceDocument,
-    /// The restoring force, likewise; with a drive an expression in x, c = cos(Omega t) and s = sin(Omega t).
+    /// The restoring force, likewise; with a drive an expression in x, c = cos(Omega t) and s =
+    /// sin(Omega t).
     pub h: ForceDocument,
     /// What drives the motion; not there for a limit cycle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive: Option<DriveDocument>,
-    /// Whether g is even, h odd and the motion of odd harmonics alone, and so the block, and the only one within claim_r among those; with a drive h is odd in x and in what of c and s
+    /// Whether g is even, h odd and the motion of odd harmonics alone, and so the block, and the
+    /// only one within claim_r among those; with a drive h is odd in x and in what of c and s
     /// changes its sign after half a period of the motion.
     pub odd: bool,
     /// `p`, `c`, `s` and the numbers of the formula are integers times 2^-bits; at most 224.
@@ -50,10 +56,11 @@ pub struct DampedCertificateDocument {
     /// The approximate 1/omega; not there with a drive, n/Omega exactly.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub p: Option<String>,
-    /// The approximate cosine coefficients of the motion, that of the constant first; of a limit cycle that of the first harmonic is positive.
+    /// The approximate cosine coefficients of the motion, that of the constant first; of a limit
+    /// cycle that of the first harmonic is positive.
     pub c: Vec<String>,
-    /// The approximate sine coefficients by harmonic; that of the constant is 0, and of a limit cycle that of the first harmonic
-    /// too.
+    /// The approximate sine coefficients by harmonic; that of the constant is 0, and of a limit
+    /// cycle that of the first harmonic too.
     pub s: Vec<String>,
     /// The last harmonic of the block; at most 400, and the block has at most 401 unknowns.
     #[serde(rename = "K")]
@@ -61,19 +68,23 @@ pub struct DampedCertificateDocument {
     /// The entries of `A_block` are integers times 2^-Abits; at most 224.
     #[serde(rename = "Abits")]
     pub inverse_bits: usize,
-    /// The approximate inverse of the derivative on the block, row by row. The columns are those of the equations: the sine of the first
-    /// harmonic, then cosine and sine of each harmonic, the others; the rows those of the unknowns: p, then the same. With a
-    /// drive both are cosine and sine of each harmonic.
+    /// The approximate inverse of the derivative on the block, row by row. The columns are those of
+    /// the equations: the sine of the first harmonic, then cosine and sine of each harmonic, the
+    /// others; the rows those of the unknowns: p, then the same. With a drive both are cosine and
+    /// sine of each harmonic.
     #[serde(rename = "A_block")]
     pub inverse: Vec<Vec<String>>,
-    /// The norm is sigma |p| + sum (|c_k| + |s_k|), sigma = 2^sigma_log2; 0 with a drive, where there is no p.
+    /// The norm is sigma |p| + sum (|c_k| + |s_k|), sigma = 2^sigma_log2; 0 with a drive, where
+    /// there is no p.
     pub sigma_log2: i32,
     /// The weight of a harmonic from one to the next; 1.
     #[cfg_attr(feature = "schema", schemars(extend("const" = "1")))]
     pub nu: String,
-    /// The radius that is claimed: there is exactly one motion whose p, c and s are so near in the norm, where `odd` exactly one of odd harmonics.
+    /// The radius that is claimed: there is exactly one motion whose p, c and s are so near in the
+    /// norm, where `odd` exactly one of odd harmonics.
     pub claim_r: String,
-    /// The formula that is judged, of a limit cycle turned until its first harmonic is a positive cosine; null where none is.
+    /// The formula that is judged, of a limit cycle turned until its first harmonic is a positive
+    /// cosine; null where none is.
     pub formula: Option<DampedFormulaDocument>,
 }
 
@@ -81,7 +92,10 @@ pub struct DampedCertificateDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "CertificateDrive"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "CertificateDrive")
+)]
 pub struct DriveDocument {
     /// The driving frequency, a positive fraction, exact.
     #[serde(rename = "Omega")]
@@ -93,7 +107,8 @@ pub struct DriveDocument {
     pub harmonic: usize,
 }
 
-/// A formula `x~(t) = X~(omega~ t)` with its numbers, and what is proved of them, each from below and from above.
+/// A formula `x~(t) = X~(omega~ t)` with its numbers, and what is proved of them, each from below
+/// and from above.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -102,9 +117,10 @@ pub struct DriveDocument {
     schemars(deny_unknown_fields, rename = "CertificateFormulaOfCycle")
 )]
 pub struct DampedFormulaDocument {
-    /// The law as it was derived: of a cycle `omega = ...` or `omega^2 = ...`, with a drive `x = ...` in t, with definitions of letters behind
-    /// commas; it has to give `omega`, with a drive `c` and `s`, at `values` to the last digits. What is of another form is words: nothing is
-    /// checked against them.
+    /// The law as it was derived: of a cycle `omega = ...` or `omega^2 = ...`, with a drive
+    /// `x = ...` in t, with definitions of letters behind commas; it has to give `omega`, with a
+    /// drive `c` and `s`, at `values` to the last digits. What is of another form is words: nothing
+    /// is checked against them.
     pub law: String,
     /// The values of the letters in the law.
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -116,14 +132,16 @@ pub struct DampedFormulaDocument {
     pub c: Vec<String>,
     /// Its sine coefficients by harmonic, likewise.
     pub s: Vec<String>,
-    /// max |X - X~|, in the unit of x, X~ of a limit cycle turned until its first harmonic is a positive cosine; of the nearest of the motions
-    /// that follow from X by symmetries of the equation: with a drive any number of its periods later, of an equation that is its own
+    /// max |X - X~|, in the unit of x, X~ of a limit cycle turned until its first harmonic is a
+    /// positive cosine; of the nearest of the motions that follow from X by symmetries of the
+    /// equation: with a drive any number of its periods later, of an equation that is its own
     /// mirror image -X too.
     pub phase_error: [String; 2],
     /// |omega - omega~|; not there with a drive.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frequency_error: Option<[String; 2]>,
-    /// max |X~'| |omega - omega~|: |x(t) - x~(t)| <= phase_error + drift |t| for all t, both with this phase at t = 0; not there with a drive.
+    /// max |X~'| |omega - omega~|: |x(t) - x~(t)| <= phase_error + drift |t| for all t, both with
+    /// this phase at t = 0; not there with a drive.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drift: Option<[String; 2]>,
     /// |a - a~|, the amplitudes of the drive's harmonic; not there for a limit cycle.
@@ -161,7 +179,10 @@ pub fn damped_certificate(certificate: &DampedCertificate) -> DampedCertificateD
         }),
         odd: certificate.odd,
         bits: certificate.bits,
-        p: certificate.drive.is_none().then(|| certificate.reciprocal.to_string()),
+        p: certificate
+            .drive
+            .is_none()
+            .then(|| certificate.reciprocal.to_string()),
         c: texts(&certificate.cosines),
         s: texts(&certificate.sines),
         highest: certificate.highest,
@@ -251,7 +272,12 @@ impl DampedCertificateDocument {
                 "`x''+g(x)*x'+h(x)=0` with `p`, or `x''+g(x)*x'+h(x,c,s)=0` with `drive`",
             );
         }
-        check_sizes(&self.nu, self.highest, &self.inverse, [self.bits, self.inverse_bits])?;
+        check_sizes(
+            &self.nu,
+            self.highest,
+            &self.inverse,
+            [self.bits, self.inverse_bits],
+        )?;
         Ok(DampedCertificate {
             damping: self.g.read("g")?,
             force: self.h.read("h")?,

@@ -9,8 +9,9 @@ use crate::audit::paper::{Entry, Table};
 use crate::impact::STEEPNESS;
 use crate::impact::friction::FrictionStudy;
 
-/// The paper's equation (6), (2/pi) atan(100 x') in place of Coulomb's sgn(x'), beside that law: Table 1 of the paper, and a swing
-/// near rest. Angles are in radians, time is in units of 1/omega of small swings, sqrt(L/g).
+/// The paper's equation (6), (2/pi) atan(100 x') in place of Coulomb's sgn(x'), beside that law:
+/// Table 1 of the paper, and a swing near rest. Angles are in radians, time is in units of 1/omega
+/// of small swings, sqrt(L/g).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -30,7 +31,8 @@ pub struct FrictionDocument {
     pub printed_entries: usize,
     /// The value of pi with which most of them come out, by its name in `readings`.
     pub pi: String,
-    /// The least and the greatest pi with which all of them come out, rounded or cut; null where none does.
+    /// The least and the greatest pi with which all of them come out, rounded or cut; null where
+    /// none does.
     pub pi_range: Option<[f64; 2]>,
     /// Every value of pi that was tried.
     pub readings: Vec<Reading>,
@@ -79,7 +81,10 @@ pub struct Printed {
 /// How many of the printed entries come out with one value of pi.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "PiReading"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "PiReading")
+)]
 pub struct Reading {
     /// The value as it is written, such as `22/7`.
     pub pi: String,
@@ -93,7 +98,8 @@ pub struct Reading {
     pub either: usize,
     /// What the arctangent tends to at high speed.
     pub limit: f64,
-    /// The speed beyond which it is larger than 1, in radians per unit of time; null where there is none.
+    /// The speed beyond which it is larger than 1, in radians per unit of time; null where there is
+    /// none.
     pub exceeds_from: Option<f64>,
 }
 
@@ -104,7 +110,8 @@ pub struct Reading {
 pub struct FirstCycle {
     /// When it ends, in units of time.
     pub until: f64,
-    /// The largest error of the force, as a fraction of alpha: all of it, where the motion turns back.
+    /// The largest error of the force, as a fraction of alpha: all of it, where the motion turns
+    /// back.
     pub largest_error: f64,
     /// The part of the time in which the force errs by more than 1 % of alpha.
     pub over_one_percent: f64,
@@ -112,7 +119,8 @@ pub struct FirstCycle {
     pub over_ten_percent: f64,
     /// The work of the arctangent along this motion over that of Coulomb's law.
     pub work_share: f64,
-    /// The same by the formula of a harmonic swing, (sqrt(1 + k^2) - 1)/k with k = 100 times the greatest speed.
+    /// The same by the formula of a harmonic swing, (sqrt(1 + k^2) - 1)/k with k = 100 times the
+    /// greatest speed.
     pub work_share_formula: f64,
 }
 
@@ -146,7 +154,8 @@ pub struct Creep {
     pub rate_overdamped: Option<f64>,
     /// The rate of the linear equation, per unit of time.
     pub rate_linear: f64,
-    /// The rate of the simulated motion when it is small, per unit of time; null where it does not move.
+    /// The rate of the simulated motion when it is small, per unit of time; null where it does not
+    /// move.
     pub rate: Option<f64>,
     /// Some states.
     pub samples: Vec<Sample>,
@@ -155,7 +164,10 @@ pub struct Creep {
 /// A state after the stop.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "CreepSample"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "CreepSample")
+)]
 pub struct Sample {
     /// The time since both were at rest where Coulomb's law stops the swing, in units of time.
     pub t: f64,
@@ -195,9 +207,9 @@ pub struct RestTime {
 pub fn friction(study: &FrictionStudy) -> FrictionDocument {
     let (table, near_rest) = (Table::of(study), &study.near_rest);
     let speeds = table.rows.iter().map(|row| {
-        let [value, error] = row
-            .printed
-            .map_or([None, None], |entries| entries.map(|entry| Some(printed(entry))));
+        let [value, error] = row.printed.map_or([None, None], |entries| {
+            entries.map(|entry| Some(printed(entry)))
+        });
         Speed {
             speed: row.laws.speed,
             sign: row.laws.sign,

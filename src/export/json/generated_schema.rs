@@ -1,4 +1,5 @@
-//! JSON Schemas made from the types that write and read the documents. Only the test that holds the files in `schemas/` to them needs this.
+//! JSON Schemas made from the types that write and read the documents. Only the test that holds the
+//! files in `schemas/` to them needs this.
 
 use std::borrow::Cow;
 
@@ -7,9 +8,10 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::Value;
 
 use super::{
-    AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument, DampedCertificateDocument,
-    FrictionDocument, ImpactComparisonDocument, ImpactDocument, Kind, LagrangianDocument, MaterialsDocument,
-    MotionDocument, MotionSweepDocument, OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
+    AuditDocument, CatalogDocument, CertificateDocument, ComparisonDocument,
+    DampedCertificateDocument, FrictionDocument, ImpactComparisonDocument, ImpactDocument, Kind,
+    LagrangianDocument, MaterialsDocument, MotionDocument, MotionSweepDocument,
+    OptimizationDocument, PrimaryDocument, PrimarySweepDocument, ResponseDocument,
     SimulationDocument, SolutionDocument, StabilityDocument, SweepDocument,
 };
 use crate::solution::Method;
@@ -17,7 +19,9 @@ use crate::solution::Method;
 impl Kind {
     /// The JSON Schema as the types have it: what the file `schemas/` of this kind has to say.
     pub fn generated_schema(self) -> Value {
-        let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
+        let generator = SchemaSettings::draft2020_12()
+            .for_serialize()
+            .into_generator();
         let mut schema = match self {
             Self::Solution => generator.into_root_schema_for::<SolutionDocument>(),
             Self::Comparison => generator.into_root_schema_for::<ComparisonDocument>(),
@@ -72,8 +76,10 @@ fn head_first(schema: Value) -> Value {
         return schema;
     };
     let head = ["$schema", "title", "description"];
-    let mut ordered: serde_json::Map<String, Value> =
-        head.iter().filter_map(|key| rest.shift_remove_entry(*key)).collect();
+    let mut ordered: serde_json::Map<String, Value> = head
+        .iter()
+        .filter_map(|key| rest.shift_remove_entry(*key))
+        .collect();
     ordered.extend(rest);
     ordered.into()
 }

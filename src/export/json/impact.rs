@@ -11,12 +11,15 @@ use super::solution::{SolutionDocument, solution};
 use super::{JsonError, Kind, check_kind};
 use crate::audit::paper;
 use crate::impact::contact::{ContactErrors, ContactLaw, ContactMotion, ContactRow, SineSeries};
-use crate::impact::{self, ContactLoss, DerivedContact, Form, Impact, Modulus, Reading, Rule, Setup, SiImpact, Side};
+use crate::impact::{
+    self, ContactLoss, DerivedContact, Form, Impact, Modulus, Reading, Rule, Setup, SiImpact, Side,
+};
 use crate::verify::Verdict;
 
-/// A swing released from rest that hits an elastic barrier: approach, contact and return in closed form, beside Runge-Kutta on the
-/// original equation. For the pendulum angles are in radians and time is in units of 1/omega of small swings, sqrt(L/g); for an equation
-/// of the user's both have its units.
+/// A swing released from rest that hits an elastic barrier: approach, contact and return in closed
+/// form, beside Runge-Kutta on the original equation. For the pendulum angles are in radians and
+/// time is in units of 1/omega of small swings, sqrt(L/g); for an equation of the user's both have
+/// its units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -28,32 +31,39 @@ pub struct ImpactDocument {
     pub equation: String,
     /// The numbers of the problem.
     pub parameters: Parameters,
-    /// The law of the free swing in the paper's reading, as a document of its own; null where that reading does not apply.
+    /// The law of the free swing in the paper's reading, as a document of its own; null where that
+    /// reading does not apply.
     pub law: Option<SolutionDocument>,
     /// omega of approach and return by that law, in radians per unit of time.
     pub frequency: Option<f64>,
     /// The law of the derived phases, as a document of its own; null where there are none.
     pub derived_law: Option<DerivedLaw>,
-    /// The three phases as the paper has them: the contact begins with the speed of the cosine, every join is continuous.
+    /// The three phases as the paper has them: the contact begins with the speed of the cosine,
+    /// every join is continuous.
     pub phases: Vec<Phase>,
-    /// The three phases with the contact speed from the energy: the velocity jumps at both joins by `velocity_jump`.
+    /// The three phases with the contact speed from the energy: the velocity jumps at both joins by
+    /// `velocity_jump`.
     pub energy_phases: Vec<Phase>,
-    /// The three phases with every harmonic of a derived motion, all joins from it; empty where no method gives one.
+    /// The three phases with every harmonic of a derived motion, all joins from it; empty where no
+    /// method gives one.
     pub derived_phases: Vec<Phase>,
     /// The numbers of the contact.
     pub contact: Contact,
     /// What the contact loses; null where it loses nothing.
     pub contact_damping: Option<ContactDamping>,
-    /// Every law of the contact at the speed of the touch by the energy; null where they are not asked for.
+    /// Every law of the contact at the speed of the touch by the energy; null where they are not
+    /// asked for.
     pub contact_laws: Option<Vec<ContactLawRow>>,
     /// The time from the release to the touch, in units of time.
     pub time_to_contact: Quantity,
-    /// The time from release to release, in units of time; where the contact loses energy, to the turning point after it.
+    /// The time from release to release, in units of time; where the contact loses energy, to the
+    /// turning point after it.
     pub period: Quantity,
     /// What Runge-Kutta says of the phases.
     pub verification: Verification,
-    /// The same quantities in SI units: of the pendulum with the contact of Hertz, where gamma follows from the design or mass, length
-    /// and gravity are given; null elsewhere, and where a number would be beyond the range of floating point.
+    /// The same quantities in SI units: of the pendulum with the contact of Hertz, where gamma
+    /// follows from the design or mass, length and gravity are given; null elsewhere, and where a
+    /// number would be beyond the range of floating point.
     pub si: Option<Si>,
 }
 
@@ -72,7 +82,8 @@ pub struct Si {
     pub radius: Option<f64>,
     /// The modulus E of the contact, in Pa; null where gamma is given.
     pub modulus: Option<f64>,
-    /// Whose modulus that is: `barrier` alone as in the paper, `rigid-sphere` for E1/(1 - nu1^2), or `both`; null where gamma is given.
+    /// Whose modulus that is: `barrier` alone as in the paper, `rigid-sphere` for E1/(1 - nu1^2),
+    /// or `both`; null where gamma is given.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = ["barrier", "rigid-sphere", "both", null])))]
     pub modulus_of: Option<String>,
     /// The stiffness k of the contact, in N/m^(3/2): gamma m g / L^(3/2).
@@ -97,9 +108,11 @@ pub struct Si {
     pub duration: Quantity,
     /// The time from release to release, in s.
     pub period: Quantity,
-    /// The greatest force of the contact, that of the damping included, in N; without damping it is that at the greatest depth.
+    /// The greatest force of the contact, that of the damping included, in N; without damping it is
+    /// that at the greatest depth.
     pub peak_force: Quantity,
-    /// The pressure in the middle of the contact at the greatest depth, in Pa; null without a radius.
+    /// The pressure in the middle of the contact at the greatest depth, in Pa; null without a
+    /// radius.
     pub peak_pressure: Option<Quantity>,
     /// The contact time that the paper prints, beside that of every reading.
     pub printed_contact_time: PrintedContactTime,
@@ -148,7 +161,8 @@ pub struct YieldLimit {
     pub limit: f64,
     /// The peak pressure at which the body begins to yield, 1.6 Y, in Pa.
     pub onset: f64,
-    /// Whether the peak pressure of Runge-Kutta is above that: then the theory is outside its range.
+    /// Whether the peak pressure of Runge-Kutta is above that: then the theory is outside its
+    /// range.
     pub exceeded: bool,
 }
 
@@ -176,14 +190,16 @@ pub struct Parameters {
     pub amplitude: f64,
     /// The place of the release, from rest, in radians.
     pub release: f64,
-    /// Where the cycle starts, in radians: the release, or the turning point of a motion released inside the barrier.
+    /// Where the cycle starts, in radians: the release, or the turning point of a motion released
+    /// inside the barrier.
     pub turning_point: f64,
     /// The place of the barrier, in radians.
     pub barrier: f64,
     /// On which side of its place the barrier is.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = ["left", "right"])))]
     pub side: String,
-    /// The force of the barrier as an expression in the depth; null for that of Hertz, gamma*d^(3/2).
+    /// The force of the barrier as an expression in the depth; null for that of Hertz,
+    /// gamma*d^(3/2).
     pub force: Option<String>,
     /// The values of the other parameters of the equation.
     pub values: BTreeMap<String, f64>,
@@ -196,7 +212,8 @@ pub struct Parameters {
     /// The law of the contact in the derived phases.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = law_names())))]
     pub contact_law: String,
-    /// The damping lambda of the contact by Hunt and Crossley, in units of time per radian; null where it loses nothing.
+    /// The damping lambda of the contact by Hunt and Crossley, in units of time per radian; null
+    /// where it loses nothing.
     pub lambda: Option<f64>,
     /// The coefficient of restitution that lambda follows from; null where it does not.
     pub restitution: Option<f64>,
@@ -218,7 +235,8 @@ pub struct Phase {
     pub start: f64,
     /// The time t since the release at which it ends, in units of time.
     pub end: f64,
-    /// The time t since the release from which its closed form counts, in units of time: its start, or the end of a derived return.
+    /// The time t since the release from which its closed form counts, in units of time: its start,
+    /// or the end of a derived return.
     pub clock: f64,
     /// The state at its start.
     pub start_state: State,
@@ -232,19 +250,24 @@ pub struct Phase {
     pub displacement: Displacement,
 }
 
-/// x = centre + parabola * s * (duration - s) + the sum of cos * cos(harmonic * frequency * s) + sin * sin(harmonic * frequency * s),
-/// with s = t - clock.
+/// x = centre + parabola * s * (duration - s) + the sum of cos * cos(harmonic * frequency * s) +
+/// sin * sin(harmonic * frequency * s), with s = t - clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "PhaseDisplacement"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "PhaseDisplacement")
+)]
 pub struct Displacement {
     /// What does not oscillate, in radians.
     pub centre: f64,
-    /// What the force at the touch bends the motion by: zero in flight, in radians per unit of time squared.
+    /// What the force at the touch bends the motion by: zero in flight, in radians per unit of time
+    /// squared.
     pub parabola: f64,
     /// The angular frequency of the first harmonic, in radians per unit of time.
     pub frequency: f64,
-    /// How long the phase lasts, in units of time: `end` less `start`, with all digits also where it is short.
+    /// How long the phase lasts, in units of time: `end` less `start`, with all digits also where
+    /// it is short.
     pub duration: f64,
     /// The harmonics.
     pub harmonics: Vec<Harmonic>,
@@ -253,7 +276,10 @@ pub struct Displacement {
 /// A harmonic of a phase, in numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "PhaseHarmonic"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "PhaseHarmonic")
+)]
 pub struct Harmonic {
     /// Its number.
     pub harmonic: u32,
@@ -372,10 +398,11 @@ pub struct ContactDamping {
     pub exit_speed: Quantity,
     /// The energy lost, per unit of mass, in radians squared per unit of time squared.
     pub energy_lost: Quantity,
-    /// The greatest force of the derived contact, per unit of mass; null where there are no derived phases.
+    /// The greatest force of the derived contact, per unit of mass; null where there are no derived
+    /// phases.
     pub peak_force: Option<f64>,
-    /// The restitution 1 - (2/3) lambda v of small damping, good to 1 % where lambda v, with v the speed at the touch, is below 0.15; null
-    /// where there are no derived phases.
+    /// The restitution 1 - (2/3) lambda v of small damping, good to 1 % where lambda v, with v the
+    /// speed at the touch, is below 0.15; null where there are no derived phases.
     pub small_damping: Option<Judged>,
 }
 
@@ -391,14 +418,15 @@ pub struct ContactLawRow {
     pub applies: bool,
     /// Why it does not, in words; null where it does.
     pub reason: Option<String>,
-    /// The time from touch to release, in units of time, its error from the exact law; this and the rest is null where the law does not
-    /// apply.
+    /// The time from touch to release, in units of time, its error from the exact law; this and the
+    /// rest is null where the law does not apply.
     pub duration: Option<Judged>,
     /// The greatest depth, in radians.
     pub penetration: Option<Judged>,
     /// The whole force at that depth, per unit of mass, in radians per unit of time squared.
     pub peak_force: Option<Judged>,
-    /// The largest difference of depth at the same time since the touch, as a fraction of the greatest depth.
+    /// The largest difference of depth at the same time since the touch, as a fraction of the
+    /// greatest depth.
     pub max_deviation: Option<f64>,
 }
 
@@ -426,7 +454,10 @@ pub struct Quantity {
 /// The closed forms beside the true motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "ImpactVerification"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "ImpactVerification")
+)]
 pub struct Verification {
     /// The size of the relative error up to which a verdict is `pass`.
     pub tolerance: f64,
@@ -450,14 +481,15 @@ pub struct Verification {
 pub struct Column {
     /// The jump of the velocity at either end of the contact, in radians per unit of time.
     pub velocity_jump: f64,
-    /// The line that replaces the force of the barrier; null in the derived reading, which has none.
+    /// The line that replaces the force of the barrier; null in the derived reading, which has
+    /// none.
     pub line: Option<Line>,
     /// The largest |x - x_true| over the period, as a fraction of the amplitude.
     pub max_deviation: f64,
     /// The same in approach, contact and return.
     pub max_deviation_by_phase: [f64; 3],
-    /// The same with the clock of each phase set right: of the flights as a fraction of the amplitude, of the contact as one of the
-    /// true depth.
+    /// The same with the clock of each phase set right: of the flights as a fraction of the
+    /// amplitude, of the contact as one of the true depth.
     pub max_deviation_of_shape: [f64; 3],
     /// Whether every quantity and every phase on its own clock is within the tolerance.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name()])))]
@@ -491,7 +523,10 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
         impact.quantities().map(|found| quantity(impact, &found));
     let verdicts = impact.verdicts(tolerance);
     let judged = |reading| {
-        let index = impact.columns.iter().position(|column| column.reading == reading)?;
+        let index = impact
+            .columns
+            .iter()
+            .position(|column| column.reading == reading)?;
         let (column, verdict) = (&impact.columns[index], verdicts[index]);
         let line = column.phases.fitted.map(|fitted| Line {
             slope: fitted.line.slope,
@@ -501,18 +536,27 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
             velocity_jump: column.phases.velocity_jump,
             line,
             max_deviation: column.deviation.total / impact.amplitude(),
-            max_deviation_by_phase: column.deviation.phases.map(|largest| largest / impact.amplitude()),
+            max_deviation_by_phase: column
+                .deviation
+                .phases
+                .map(|largest| largest / impact.amplitude()),
             max_deviation_of_shape: impact.deviations(column),
             verdict: verdict.name().to_owned(),
         })
     };
     let phases = |reading| {
         let column = impact.column(reading).into_iter();
-        column.flat_map(|column| &column.phases.phases).map(Phase::of).collect()
+        column
+            .flat_map(|column| &column.phases.phases)
+            .map(Phase::of)
+            .collect()
     };
     let [paper, energy, derived] = READINGS.map(judged);
     let contact_laws = impact.contact_laws.iter().map(ContactLawRow::of);
-    let first = paper.as_ref().or(derived.as_ref()).map(|column| column.verdict.clone());
+    let first = paper
+        .as_ref()
+        .or(derived.as_ref())
+        .map(|column| column.verdict.clone());
     ImpactDocument {
         schema: Kind::Impact.schema().to_owned(),
         equation: impact.equation.clone(),
@@ -539,7 +583,10 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
             duration,
         },
         contact_damping: contact_damping(impact),
-        contact_laws: impact.setup.every_contact_law.then(|| contact_laws.collect()),
+        contact_laws: impact
+            .setup
+            .every_contact_law
+            .then(|| contact_laws.collect()),
         time_to_contact,
         period,
         verification: Verification {
@@ -616,9 +663,14 @@ fn si(impact: &Impact, si: &SiImpact, tolerance: f64) -> Si {
 }
 
 impl Parameters {
-    /// The numbers of a setup whose swing has this equilibrium and turns at this point and whose contact has this damping, and the order
-    /// of `law`.
-    pub(super) fn of(setup: &Setup, [equilibrium, turning_point]: [f64; 2], order: Option<u32>, damping: f64) -> Self {
+    /// The numbers of a setup whose swing has this equilibrium and turns at this point and whose
+    /// contact has this damping, and the order of `law`.
+    pub(super) fn of(
+        setup: &Setup,
+        [equilibrium, turning_point]: [f64; 2],
+        order: Option<u32>,
+        damping: f64,
+    ) -> Self {
         Self {
             amplitude: (turning_point - equilibrium).abs(),
             release: setup.release,
@@ -709,13 +761,20 @@ const READINGS: [Reading; 3] = [Reading::Paper, Reading::Energy, Reading::Derive
 fn quantity(impact: &Impact, quantity: &impact::Quantity) -> Quantity {
     let errors: Vec<f64> = quantity.errors().collect();
     let found = |reading| {
-        let index = impact.columns.iter().position(|column| column.reading == reading);
+        let index = impact
+            .columns
+            .iter()
+            .position(|column| column.reading == reading);
         match index {
             Some(index) => (Some(quantity.closed_forms[index]), Some(errors[index])),
             None => (None, None),
         }
     };
-    let [(paper, paper_error), (energy, energy_error), (derived, derived_error)] = READINGS.map(found);
+    let [
+        (paper, paper_error),
+        (energy, energy_error),
+        (derived, derived_error),
+    ] = READINGS.map(found);
     Quantity {
         paper,
         energy,
@@ -841,7 +900,10 @@ impl Displacement {
     /// The depth in contact that these harmonics are.
     fn read_depth(&self) -> SineSeries {
         let sines = |rest: u32| -> Vec<f64> {
-            let those = self.harmonics.iter().filter(|wave| wave.harmonic % 2 == rest);
+            let those = self
+                .harmonics
+                .iter()
+                .filter(|wave| wave.harmonic % 2 == rest);
             those.map(|wave| wave.sin).collect()
         };
         let mut depth = SineSeries::new(self.duration, self.parabola, sines(1));

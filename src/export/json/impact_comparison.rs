@@ -10,7 +10,8 @@ use crate::impact::{ImpactComparison, ImpactRow};
 use crate::solution::Degrees;
 use crate::verify::Verdict;
 
-/// Every method on one impact, beside Runge-Kutta on the equation as it stands. Units as in a document of kind `impact`.
+/// Every method on one impact, beside Runge-Kutta on the equation as it stands. Units as in a
+/// document of kind `impact`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -50,19 +51,24 @@ pub struct TrueNumbers {
 /// A row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "ImpactMethodRow"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "ImpactMethodRow")
+)]
 pub struct Row {
     /// The method, by its name on the command line; `paper` and `energy` are the paper's readings.
     pub method: String,
     /// The order that was chosen; null for a method without one.
     pub order: Option<u32>,
-    /// The degrees of an approximant, of numerator and denominator or of P, Q and R; null for every other method.
+    /// The degrees of an approximant, of numerator and denominator or of P, Q and R; null for every
+    /// other method.
     pub degrees: Option<Vec<u32>>,
     /// Whether the method applies.
     pub applies: bool,
     /// Why it does not, in words; null where it does.
     pub reason: Option<String>,
-    /// The time from the release to the touch, in units of time; this and the rest is null where the method does not apply.
+    /// The time from the release to the touch, in units of time; this and the rest is null where
+    /// the method does not apply.
     pub time_to_contact: Option<Judged>,
     /// The speed at the touch, in radians per unit of time.
     pub speed: Option<Judged>,
@@ -72,8 +78,8 @@ pub struct Row {
     pub duration: Option<Judged>,
     /// The time from release to release, in units of time.
     pub period: Option<Judged>,
-    /// The largest |x - x_true| in approach, contact and return, each on its own clock: of the flights as a fraction of the amplitude,
-    /// of the contact as one of the true depth.
+    /// The largest |x - x_true| in approach, contact and return, each on its own clock: of the
+    /// flights as a fraction of the amplitude, of the contact as one of the true depth.
     pub max_deviation_by_phase: Option<[f64; 3]>,
     /// Whether every number and every phase is within the tolerance.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = [Verdict::Pass.name(), Verdict::Fail.name(), null])))]

@@ -9,8 +9,9 @@ use super::number::Map;
 use crate::audit::paper::Finding;
 use crate::mechanics::{Group, MechanismStudy, Mode, Place, RestStudy};
 
-/// A mechanism, its equations of motion by Lagrange, its places of rest and the dimensionless groups on which its motion depends.
-/// Formulas are text of the grammar; `q'` is the velocity of `q`. Numbers are in the units of the values that were given.
+/// A mechanism, its equations of motion by Lagrange, its places of rest and the dimensionless
+/// groups on which its motion depends. Formulas are text of the grammar; `q'` is the velocity of
+/// `q`. Numbers are in the units of the values that were given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -36,16 +37,19 @@ pub struct LagrangianDocument {
     pub accelerations: Map<String>,
     /// Whether every term was checked for its unit: only where units were given.
     pub units_checked: bool,
-    /// The parameters that give the units of the dimensionless form, and behind them the sizes of the motion that do, `x0` of the
-    /// coordinate x, where no product of parameters has its unit; null without units or where there is none.
+    /// The parameters that give the units of the dimensionless form, and behind them the sizes of
+    /// the motion that do, `x0` of the coordinate x, where no product of parameters has its unit;
+    /// null without units or where there is none.
     pub units: Option<Vec<String>>,
-    /// The sums of parameters that count as one parameter, by their names in what follows; null likewise.
+    /// The sums of parameters that count as one parameter, by their names in what follows; null
+    /// likewise.
     pub combinations: Option<Map<String>>,
     /// The unit of time in them; null likewise.
     pub time_unit: Option<String>,
     /// The number of parameters of the equations; null likewise.
     pub parameter_count: Option<usize>,
-    /// The rank of the matrix of their dimensions, with those of the sizes that are units; null likewise.
+    /// The rank of the matrix of their dimensions, with those of the sizes that are units; null
+    /// likewise.
     pub rank: Option<usize>,
     /// The dimensionless numbers on which the motion depends; null likewise.
     pub groups: Option<Vec<GroupDocument>>,
@@ -55,9 +59,11 @@ pub struct LagrangianDocument {
     pub no_groups: Option<String>,
     /// The values that were given.
     pub values: Map<f64>,
-    /// Places of rest that were found; others are not ruled out. Contacts and terms in the time are left out.
+    /// Places of rest that were found; others are not ruled out. Contacts and terms in the time are
+    /// left out.
     pub equilibria: Vec<EquilibriumDocument>,
-    /// The modes at each of them, in the same order; an empty list where not every parameter has a value.
+    /// The modes at each of them, in the same order; an empty list where not every parameter has a
+    /// value.
     pub modes: Vec<Vec<ModeDocument>>,
     /// The paper's equations beside these; empty for any other mechanism.
     pub findings: Vec<FindingDocument>,
@@ -81,14 +87,18 @@ pub struct GroupDocument {
 /// A place of rest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "Equilibrium"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "Equilibrium")
+)]
 pub struct EquilibriumDocument {
     /// The place of each coordinate; null for one that may be anywhere.
     pub places: Map<Option<String>>,
     /// What lies between -1 and 1 where the place exists; null where it always does.
     pub cosine: Option<String>,
-    /// omega^2 of small swings about it, negative where it is unstable; null for several coordinates, and where the linear
-    /// equation changes with the time other than by sines and cosines of it.
+    /// omega^2 of small swings about it, negative where it is unstable; null for several
+    /// coordinates, and where the linear equation changes with the time other than by sines and
+    /// cosines of it.
     pub frequency_squared: Option<String>,
 }
 
@@ -101,7 +111,8 @@ pub struct ModeDocument {
     pub frequency: f64,
     /// The exponent of growth, negative for decay, per unit of time.
     pub growth: f64,
-    /// The coordinates in proportion, the largest 1; null where damping makes them move out of step.
+    /// The coordinates in proportion, the largest 1; null where damping makes them move out of
+    /// step.
     pub shape: Option<Vec<f64>>,
 }
 
@@ -133,7 +144,10 @@ pub struct FindingDocument {
 pub fn lagrangian(study: &MechanismStudy) -> LagrangianDocument {
     let mechanism = &study.question.mechanism;
     let coordinates = &mechanism.coordinates;
-    let groups = study.groups.as_ref().and_then(|groups| groups.as_ref().ok());
+    let groups = study
+        .groups
+        .as_ref()
+        .and_then(|groups| groups.as_ref().ok());
     let zero = |left: &crate::expr::Expr| format!("{left} = 0");
     let names = coordinates.iter().map(ToString::to_string);
     let accelerations = study.equations.accelerations().unwrap_or_default();
@@ -144,19 +158,33 @@ pub fn lagrangian(study: &MechanismStudy) -> LagrangianDocument {
         };
         let places = rest.rest.places.iter().map(place);
         EquilibriumDocument {
-            places: coordinates.iter().map(ToString::to_string).zip(places).collect(),
+            places: coordinates
+                .iter()
+                .map(ToString::to_string)
+                .zip(places)
+                .collect(),
             cosine: rest.rest.condition.as_ref().map(ToString::to_string),
-            frequency_squared: rest.modes.square().ok().flatten().map(|square| square.to_string()),
+            frequency_squared: rest
+                .modes
+                .square()
+                .ok()
+                .flatten()
+                .map(|square| square.to_string()),
         }
     };
     let modes = |rest: &RestStudy| {
-        let known = rest.numbers.as_ref().and_then(|numbers| numbers.as_ref().ok());
+        let known = rest
+            .numbers
+            .as_ref()
+            .and_then(|numbers| numbers.as_ref().ok());
         let mode = |mode: &Mode| ModeDocument {
             frequency: mode.frequency,
             growth: mode.growth,
             shape: mode.shape.clone(),
         };
-        known.map(|modes| modes.iter().map(mode).collect()).unwrap_or_default()
+        known
+            .map(|modes| modes.iter().map(mode).collect())
+            .unwrap_or_default()
     };
     LagrangianDocument {
         schema: Kind::Lagrangian.schema().to_owned(),
@@ -170,14 +198,26 @@ pub fn lagrangian(study: &MechanismStudy) -> LagrangianDocument {
             .map(|(on, force)| (on.to_string(), force.to_string()))
             .collect(),
         equations: study.equations.left.iter().map(zero).collect(),
-        divisors: study.equations.divisors.iter().map(ToString::to_string).collect(),
-        accelerations: names.zip(accelerations.iter().map(ToString::to_string)).collect(),
+        divisors: study
+            .equations
+            .divisors
+            .iter()
+            .map(ToString::to_string)
+            .collect(),
+        accelerations: names
+            .zip(accelerations.iter().map(ToString::to_string))
+            .collect(),
         units_checked: study.question.units.is_some(),
         units: groups.map(|groups| groups.units.iter().map(ToString::to_string).collect()),
         combinations: groups.map(|groups| {
             let combinations = groups.combinations.iter();
             combinations
-                .map(|combination| (combination.name.to_string(), combination.meaning.to_string()))
+                .map(|combination| {
+                    (
+                        combination.name.to_string(),
+                        combination.meaning.to_string(),
+                    )
+                })
                 .collect()
         }),
         time_unit: groups.map(|groups| groups.time.to_string()),

@@ -9,8 +9,8 @@ use super::simulation::{Barrier, Dissipation, ROUTES};
 use crate::impact::{self, ContactDamping, MaterialStudy, Parameter};
 use crate::report::material_sentences;
 
-/// The same swing against barriers of several materials. Angles are in radians, time is in units of 1/omega of small swings,
-/// sqrt(L/g), energies in units of m g L, unless another unit is given.
+/// The same swing against barriers of several materials. Angles are in radians, time is in units of
+/// 1/omega of small swings, sqrt(L/g), energies in units of m g L, unless another unit is given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -22,12 +22,13 @@ pub struct MaterialsDocument {
     pub parameters: Parameters,
     /// What damps the design at its own modulus, in every form.
     pub dissipation: Dissipation,
-    /// The dampings that nobody gave, by their keys in a file: their numbers are not the paper's, which prints none.
+    /// The dampings that nobody gave, by their keys in a file: their numbers are not the paper's,
+    /// which prints none.
     pub defaults: Vec<String>,
     /// The materials, in the order in which they were given.
     pub materials: Vec<Row>,
-    /// The materials under each form of the damping of the contact, the given one first; empty where the contact loses nothing or no
-    /// barrier is touched.
+    /// The materials under each form of the damping of the contact, the given one first; empty
+    /// where the contact loses nothing or no barrier is touched.
     pub held_fixed: Vec<HeldFixed>,
     /// Without a barrier.
     pub no_barrier: RestTime,
@@ -38,7 +39,10 @@ pub struct MaterialsDocument {
 /// The pendulum and the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "MaterialsParameters"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "MaterialsParameters")
+)]
 pub struct Parameters {
     /// Where the barriers stand.
     pub barrier: Barrier,
@@ -85,7 +89,10 @@ pub struct RestTime {
 /// A material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "MaterialRow"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "MaterialRow")
+)]
 pub struct Row {
     /// Its name.
     pub name: String,
@@ -133,7 +140,10 @@ pub struct FirstContact {
 /// A stated yield limit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "MaterialYieldCheck"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "MaterialYieldCheck")
+)]
 pub struct YieldCheck {
     /// The body: `sphere` or `barrier`.
     pub body: String,
@@ -157,11 +167,13 @@ pub struct HeldFixed {
     pub value: f64,
     /// The unit of that number; empty where it has none.
     pub unit: String,
-    /// The speed at which a restitution is stated, in radians per unit of time; null for other forms.
+    /// The speed at which a restitution is stated, in radians per unit of time; null for other
+    /// forms.
     pub at_speed: Option<f64>,
     /// mu/gamma of each material, dimensionless.
     pub mu_over_gamma: Vec<f64>,
-    /// The restitution of each material at the speed of the first touch without damping; null where no barrier is touched.
+    /// The restitution of each material at the speed of the first touch without damping; null where
+    /// no barrier is touched.
     pub restitutions: Vec<Option<f64>>,
     /// The rest time of each material, in units of time; null where it does not rest.
     pub rest_times: Vec<Option<f64>>,

@@ -1,16 +1,17 @@
 //! JSON documents: one type for each kind, by which it is written, read and described.
 //!
 //! In come results: a [`Solution`], a [`Comparison`](crate::verify::comparison::Comparison), an
-//! [`Impact`](crate::impact::Impact), a report of a simulation or a sweep. Out goes a document that `serde_json` prints and
-//! reads back; solutions and phases read back into results. What is no such document is a [`JsonError`], which names the key.
+//! [`Impact`](crate::impact::Impact), a report of a simulation or a sweep. Out goes a document that
+//! `serde_json` prints and reads back; solutions and phases read back into results. What is no such
+//! document is a [`JsonError`], which names the key.
 //!
 //! ```text
 //! number       {"exact": "-1/8", "value": -0.125}
 //! polynomial   {"terms": [{"monomial": {"A": 2}, "exact": "-1/8", "value": -0.125}, ...]}
 //! ```
 //!
-//! What stands in the documentation of a field stands in the schema, [`Kind::json_schema`]. What has no value is null: a key is
-//! never left out.
+//! What stands in the documentation of a field stands in the schema, [`Kind::json_schema`]. What
+//! has no value is null: a key is never left out.
 
 pub mod audit;
 pub mod catalog;
@@ -45,7 +46,9 @@ pub use audit::{AuditDocument, audit};
 pub use catalog::{CatalogDocument, catalog};
 pub use certificate::{CertificateDocument, certificate};
 pub use comparison::{ComparisonDocument, comparison};
-pub use damped_certificate::{DampedCertificateDocument, EQUATION_OF_CYCLES, EQUATION_WITH_DRIVE, damped_certificate};
+pub use damped_certificate::{
+    DampedCertificateDocument, EQUATION_OF_CYCLES, EQUATION_WITH_DRIVE, damped_certificate,
+};
 pub use friction::{FrictionDocument, friction};
 pub use impact::{ImpactDocument, impact};
 pub use impact_comparison::{ImpactComparisonDocument, impact_comparison};

@@ -11,7 +11,8 @@ use crate::report::TrajectoryReport;
 use crate::system::{End, Integrator};
 use crate::trajectory::{Course, Crossing, Section, in_words};
 
-/// A motion in numbers, of an equation of motion or of a mechanism of several coordinates. Units are those of the values given.
+/// A motion in numbers, of an equation of motion or of a mechanism of several coordinates. Units
+/// are those of the values given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -35,20 +36,23 @@ pub struct MotionDocument {
     pub section: Option<SectionDocument>,
     /// Those at the end.
     pub final_state: MotionSample,
-    /// The account of the energy; null for an equation whose inertia depends on the position, and without a value for a
-    /// letter of the energies that cancels in the equations of motion.
+    /// The account of the energy; null for an equation whose inertia depends on the position, and
+    /// without a value for a letter of the energies that cancels in the equations of motion.
     pub energy: Option<EnergyAccount>,
-    /// The largest difference from the other integrator, over the largest displacement; null where it was not asked for.
+    /// The largest difference from the other integrator, over the largest displacement; null where
+    /// it was not asked for.
     pub difference: Option<f64>,
-    /// The time until which the states are known to six digits; beyond it a start displaced by 1e-12 of it leads elsewhere. Left out where
-    /// they are known to the end.
+    /// The time until which the states are known to six digits; beyond it a start displaced by
+    /// 1e-12 of it leads elsewhere. Left out where they are known to the end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub known_until: Option<f64>,
-    /// The stretches of time, from when until when, on which dry friction holds something: at rest, on a belt or on another body.
+    /// The stretches of time, from when until when, on which dry friction holds something: at rest,
+    /// on a belt or on another body.
     pub held: Vec<[f64; 2]>,
     /// Why it ends where it does.
     pub stopped: String,
-    /// Whether it was followed as long as asked, its energy is accounted for and the other integrator, where asked for, agrees.
+    /// Whether it was followed as long as asked, its energy is accounted for and the other
+    /// integrator, where asked for, agrees.
     pub complete: bool,
 }
 
@@ -76,7 +80,8 @@ pub struct SectionDocument {
     pub after: f64,
     /// The states, in order.
     pub states: Vec<MotionSample>,
-    /// The times at which the motion turns back on the section: it touches and does not cross it, so that they are no states.
+    /// The times at which the motion turns back on the section: it touches and does not cross it,
+    /// so that they are no states.
     pub touches: Vec<f64>,
 }
 
@@ -91,7 +96,8 @@ pub struct EnergyAccount {
     pub end: f64,
     /// The work of forces, dampers and moving constraints in between.
     pub work: f64,
-    /// The work of each of them by its name: a term of the equation, as it stands on the left side; `Q_x`, `dissipation`.
+    /// The work of each of them by its name: a term of the equation, as it stands on the left side;
+    /// `Q_x`, `dissipation`.
     pub works: Map<f64>,
     /// The largest part not accounted for at any time, over the largest energy.
     pub residual: f64,
@@ -131,7 +137,11 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
     MotionDocument {
         schema: Kind::Motion.schema().to_owned(),
         coordinates: course.coordinates.iter().map(ToString::to_string).collect(),
-        equations: course.equations.iter().map(|left| format!("{left} = 0")).collect(),
+        equations: course
+            .equations
+            .iter()
+            .map(|left| format!("{left} = 0"))
+            .collect(),
         parameters: course
             .values
             .iter()
@@ -143,10 +153,14 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
             Integrator::RungeKutta => "runge-kutta",
         }
         .to_owned(),
-        section: course
-            .section
-            .as_ref()
-            .map(|section| section_document(course, section, (motion.crossings(), motion.touches()), &named)),
+        section: course.section.as_ref().map(|section| {
+            section_document(
+                course,
+                section,
+                (motion.crossings(), motion.touches()),
+                &named,
+            )
+        }),
         samples: report.times().into_iter().filter_map(sample).collect(),
         final_state: sample(motion.end()).unwrap_or(start),
         energy: motion.balance.as_ref().map(|balance| EnergyAccount {
@@ -187,7 +201,8 @@ fn section_document(
     }
 }
 
-/// Many motions of one equation or mechanism, over every combination of the values of some parameters or starts.
+/// Many motions of one equation or mechanism, over every combination of the values of some
+/// parameters or starts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -216,7 +231,10 @@ pub struct MotionSweepDocument {
 /// One of many motions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SweptMotion"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "SweptMotion")
+)]
 pub struct SweptMotionDocument {
     /// The values of what is varied.
     pub values: Map<f64>,
@@ -235,11 +253,24 @@ pub struct SweptMotionDocument {
 /// The document of kind `motion-sweep`.
 pub fn motion_sweep(sweep: &MotionSweep) -> MotionSweepDocument {
     let course = sweep.course;
-    let states: Vec<String> = course.rates.states.iter().map(ToString::to_string).collect();
-    let named = |state: &[f64]| -> Map<f64> { states.iter().cloned().zip(state.iter().copied()).collect() };
+    let states: Vec<String> = course
+        .rates
+        .states
+        .iter()
+        .map(ToString::to_string)
+        .collect();
+    let named =
+        |state: &[f64]| -> Map<f64> { states.iter().cloned().zip(state.iter().copied()).collect() };
     let is_varied = |name: &str| sweep.names.iter().any(|varied| varied.name() == name);
-    let rest = |all: Map<f64>| -> Map<f64> { all.into_iter().filter(|(name, _)| !is_varied(name)).collect() };
-    let parameters = course.values.iter().map(|(name, value)| (name.to_string(), *value));
+    let rest = |all: Map<f64>| -> Map<f64> {
+        all.into_iter()
+            .filter(|(name, _)| !is_varied(name))
+            .collect()
+    };
+    let parameters = course
+        .values
+        .iter()
+        .map(|(name, value)| (name.to_string(), *value));
     let motions = sweep.motions.iter().map(|motion| SweptMotionDocument {
         values: sweep
             .names
@@ -257,17 +288,25 @@ pub fn motion_sweep(sweep: &MotionSweep) -> MotionSweepDocument {
             .map(ToString::to_string)
             .zip(motion.extremes.iter().copied())
             .collect(),
-        section: course
-            .section
-            .as_ref()
-            .map(|section| section_document(course, section, (&motion.crossings, &motion.touches), &named)),
+        section: course.section.as_ref().map(|section| {
+            section_document(
+                course,
+                section,
+                (&motion.crossings, &motion.touches),
+                &named,
+            )
+        }),
         stopped: in_words(motion.reason).to_owned(),
         complete: motion.reason == End::Reached,
     });
     MotionSweepDocument {
         schema: Kind::MotionSweep.schema().to_owned(),
         coordinates: course.coordinates.iter().map(ToString::to_string).collect(),
-        equations: course.equations.iter().map(|left| format!("{left} = 0")).collect(),
+        equations: course
+            .equations
+            .iter()
+            .map(|left| format!("{left} = 0"))
+            .collect(),
         parameters: rest(parameters.collect()),
         start: rest(named(&course.start)),
         duration: course.duration,

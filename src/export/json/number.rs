@@ -34,7 +34,8 @@ pub struct Constant {
     pub value: Option<f64>,
 }
 
-/// A polynomial: the sum of its terms, lowest order in the small parameters first; zero where there is none.
+/// A polynomial: the sum of its terms, lowest order in the small parameters first; zero where there
+/// is none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -48,7 +49,8 @@ pub struct Polynomial {
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Term {
-    /// The power of each symbol in it, negative ones too; `verification.values` has the value of every symbol.
+    /// The power of each symbol in it, negative ones too; `verification.values` has the value of
+    /// every symbol.
     pub monomial: Map<i32>,
     /// The exact coefficient as text: a fraction such as `-1/8`.
     pub exact: String,
@@ -105,7 +107,8 @@ impl Polynomial {
     /// # Errors
     /// A coefficient that is no fraction, exponents or symbols beyond all measure.
     pub fn exact(&self, key: &str) -> Result<exact::Polynomial, JsonError> {
-        // No document of ours comes near them; those of a hostile one must neither overflow nor keep us busy.
+        // No document of ours comes near them; those of a hostile one must neither overflow nor
+        // keep us busy.
         const HIGHEST_EXPONENT: u32 = 2_000_000;
         const MOST_SYMBOLS: usize = 1000;
         let mut polynomial = exact::Polynomial::zero();
@@ -116,7 +119,10 @@ impl Polynomial {
             let exponents = term.monomial.values();
             let highest = exponents.map(|exponent| exponent.unsigned_abs()).max();
             if highest > Some(HIGHEST_EXPONENT) || term.monomial.len() > MOST_SYMBOLS {
-                return unexpected(key, "exponents up to 2000000, of up to 1000 symbols in a term");
+                return unexpected(
+                    key,
+                    "exponents up to 2000000, of up to 1000 symbols in a term",
+                );
             }
             let powers = term.monomial.iter();
             let monomial = powers.fold(Monomial::one(), |product, (name, exponent)| {
@@ -128,7 +134,8 @@ impl Polynomial {
     }
 }
 
-/// What the names in a document stand for: the letters of an answer give way to the names of its equation.
+/// What the names in a document stand for: the letters of an answer give way to the names of its
+/// equation.
 pub(super) struct Names {
     own: Vec<Symbol>,
     letters: Letters,
@@ -139,7 +146,11 @@ impl Names {
     pub fn beside(own: impl IntoIterator<Item = Symbol>, driven: bool) -> Self {
         let own: Vec<Symbol> = own.into_iter().collect();
         let letters = Letters::beside(&own, driven);
-        let clash = |name: &Symbol| letters.unusual().any(|(usual, _)| usual.name() == name.name());
+        let clash = |name: &Symbol| {
+            letters
+                .unusual()
+                .any(|(usual, _)| usual.name() == name.name())
+        };
         let apart = |name: Symbol| if clash(&name) { name.apart() } else { name };
         Self {
             own: own.into_iter().map(apart).collect(),
@@ -172,7 +183,9 @@ impl Names {
             return Ok(expression);
         }
         let symbols = expression.symbols().into_iter();
-        let symbols = symbols.map(|name| (name, Expr::from(self.changed(name)))).collect();
+        let symbols = symbols
+            .map(|name| (name, Expr::from(self.changed(name))))
+            .collect();
         let changed = expression.substitute_all(&symbols);
         changed.or_else(|_| unexpected(key, "an expression"))
     }
@@ -183,7 +196,11 @@ impl Names {
     }
 
     /// The exact polynomial of a document.
-    pub fn polynomial(&self, polynomial: &Polynomial, key: &str) -> Result<exact::Polynomial, JsonError> {
+    pub fn polynomial(
+        &self,
+        polynomial: &Polynomial,
+        key: &str,
+    ) -> Result<exact::Polynomial, JsonError> {
         let read = polynomial.exact(key)?;
         if self.are_usual() {
             return Ok(read);

@@ -1,7 +1,9 @@
-//! Kind `optimization`: a search for the best damper; and its record, a line for each run, from which it can be taken up again.
+//! Kind `optimization`: a search for the best damper; and its record, a line for each run, from
+//! which it can be taken up again.
 //!
-//! The first line of a record says what was asked, every other one is a run. A line is written as a whole when its run has ended, so that of
-//! a process that is killed at most the last line is incomplete; it is left out where the record is read.
+//! The first line of a record says what was asked, every other one is a run. A line is written as a
+//! whole when its run has ended, so that of a process that is killed at most the last line is
+//! incomplete; it is left out where the record is read.
 
 #[cfg(feature = "schema")]
 use schemars::JsonSchema;
@@ -16,8 +18,8 @@ use crate::impact::{self, ContactDamping, Friction, Parameter, REST_FRACTION, Sp
 use crate::optimize::{self, Objective, Question, Role, SearchRun, Study, WITHIN};
 use crate::report::optimization_sentences;
 
-/// A search for the best damper. Angles are in radians, everything else in SI units, unless another unit is given; units of time are 1/omega
-/// of small swings, sqrt(L/g).
+/// A search for the best damper. Angles are in radians, everything else in SI units, unless another
+/// unit is given; units of time are 1/omega of small swings, sqrt(L/g).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -31,13 +33,17 @@ pub struct OptimizationDocument {
     pub complete: bool,
     /// The runs, by their numbers.
     pub runs: Vec<Run>,
-    /// The best values of the runs as the searches have them, and of other searches with as many evaluations; empty with several objectives.
+    /// The best values of the runs as the searches have them, and of other searches with as many
+    /// evaluations; empty with several objectives.
     pub searches: Vec<Search>,
-    /// The median over the runs of the best value after the random population and after every generation; null while half of them have none.
+    /// The median over the runs of the best value after the random population and after every
+    /// generation; null while half of them have none.
     pub median_curve: Vec<Option<f64>>,
-    /// The best designs of the runs judged again by integration, the best first; with several objectives the front, by the first one.
+    /// The best designs of the runs judged again by integration, the best first; with several
+    /// objectives the front, by the first one.
     pub finalists: Vec<Finalist>,
-    /// The paper's Table 5 under the same assumptions, by integration; null where materials are tried.
+    /// The paper's Table 5 under the same assumptions, by integration; null where materials are
+    /// tried.
     pub papers_design: Option<Design>,
     /// What decides the best design; null with several objectives.
     pub decision: Option<Decision>,
@@ -55,11 +61,13 @@ pub struct Asked {
     pub objectives: Vec<String>,
     /// What varies, in the order in which points have it.
     pub variables: Vec<Variable>,
-    /// The materials that are tried; a point has their number from 0 up, its fraction is left out, behind the variables where there are two or more.
+    /// The materials that are tried; a point has their number from 0 up, its fraction is left out,
+    /// behind the variables where there are two or more.
     pub materials: Vec<Material>,
     /// What must not be larger.
     pub limits: Vec<Limit>,
-    /// The density of the sphere, in kg/m^3, where its mass is that of its radius; null where it is not.
+    /// The density of the sphere, in kg/m^3, where its mass is that of its radius; null where it is
+    /// not.
     pub density: Option<f64>,
     /// Whether the bodies must not yield.
     pub elastic: bool,
@@ -71,7 +79,8 @@ pub struct Asked {
     pub main_mass: Option<MainMassDocument>,
     /// What is held fixed.
     pub held_fixed: HeldFixed,
-    /// The dampings that nobody gave, by their keys in a file: their numbers are not the paper's, which prints none.
+    /// The dampings that nobody gave, by their keys in a file: their numbers are not the paper's,
+    /// which prints none.
     pub defaults: Vec<String>,
     /// How long motions are followed, in units of time.
     pub duration: f64,
@@ -92,7 +101,10 @@ pub struct Asked {
 /// A number of the design that varies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchVariable"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "SearchVariable")
+)]
 pub struct Variable {
     /// Its key in a file.
     pub name: String,
@@ -107,7 +119,10 @@ pub struct Variable {
 /// A material that is tried.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchMaterial"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "SearchMaterial")
+)]
 pub struct Material {
     /// Its name.
     pub name: String,
@@ -131,7 +146,8 @@ pub struct ContactForm {
     pub value: f64,
     /// The speed at which a restitution is stated, in `speed_unit`; null where none is.
     pub at_speed: Option<f64>,
-    /// The unit of that speed: `m/s`, or `rad*omega`, radians per unit of time. Left out where none is stated.
+    /// The unit of that speed: `m/s`, or `rad*omega`, radians per unit of time. Left out where none
+    /// is stated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_unit: Option<String>,
 }
@@ -139,7 +155,10 @@ pub struct ContactForm {
 /// What must not be larger.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchLimit"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "SearchLimit")
+)]
 pub struct Limit {
     /// What, by its name as an objective.
     pub objective: String,
@@ -152,7 +171,10 @@ pub struct Limit {
 /// What is held fixed; null where it varies or is not given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchHeldFixed"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "SearchHeldFixed")
+)]
 pub struct HeldFixed {
     /// The release from rest, in radians.
     pub amplitude: f64,
@@ -187,7 +209,8 @@ pub struct HeldFixed {
     pub gravity: f64,
 }
 
-/// The genetic algorithm; with several objectives NSGA-II, which has only population, generations and budget of it.
+/// The genetic algorithm; with several objectives NSGA-II, which has only population, generations
+/// and budget of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -239,27 +262,32 @@ pub struct Genetic {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchRun"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "SearchRun")
+)]
 pub struct Run {
     /// Its number, from 0.
     pub number: usize,
     /// The best design, or the front; empty where no design rests and keeps the constraints.
     pub found: Vec<Found>,
-    /// The best value after the random population and after every generation, null while there is none; with several objectives the size of the
-    /// front.
+    /// The best value after the random population and after every generation, null while there is
+    /// none; with several objectives the size of the front.
     pub curve: Vec<Option<f64>>,
     /// Generations after the random population.
     pub generations: usize,
     /// Designs that were followed.
     pub evaluations: usize,
-    /// Those that were integrated: they have no closed form, or would be the best if they keep the constraints.
+    /// Those that were integrated: they have no closed form, or would be the best if they keep the
+    /// constraints.
     pub integrated: usize,
     /// Why it ended.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = Stop::ALL.map(Stop::name))))]
     pub stop: String,
 }
 
-/// A design that a run found, as the search has it: by closed forms, by integration where there are none.
+/// A design that a run found, as the search has it: by closed forms, by integration where there are
+/// none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -332,7 +360,8 @@ pub struct Design {
     pub peak_force: Option<f64>,
     /// The greatest pressure of Hertz, in Pa; null where there is none.
     pub peak_pressure: Option<f64>,
-    /// The coefficient of restitution of the contact with the greatest force, dimensionless; null where there is none.
+    /// The coefficient of restitution of the contact with the greatest force, dimensionless; null
+    /// where there is none.
     pub restitution: Option<f64>,
     /// The rest time of the main mass, in seconds; null where it never rests, or none counts.
     pub primary_rest_time: Option<f64>,
@@ -370,11 +399,13 @@ pub struct Decision {
     pub within: f64,
     /// The part of the box that is as good.
     pub share: f64,
-    /// Least and greatest value of every variable, and of the number of the material, among the designs that are as good.
+    /// Least and greatest value of every variable, and of the number of the material, among the
+    /// designs that are as good.
     pub extents: Vec<[f64; 2]>,
     /// Constraints with no more than 1 % to spare, in words.
     pub active: Vec<String>,
-    /// The rest times with the length at its limits, in both units; null where the length does not vary or no rest time is the objective.
+    /// The rest times with the length at its limits, in both units; null where the length does not
+    /// vary or no rest time is the objective.
     pub unit: Option<Unit>,
     /// The objective with each material, the rest as it is best; null where it does not rest.
     pub materials: Vec<Option<f64>>,
@@ -389,13 +420,16 @@ pub struct Sensitivity {
     pub name: String,
     /// Its value in the best design.
     pub value: f64,
-    /// The change of the objective in parts for one part of the variable, by integration; null where it has no value on one side.
+    /// The change of the objective in parts for one part of the variable, by integration; null
+    /// where it has no value on one side.
     pub elasticity: Option<f64>,
     /// Between these values the objective is no more than 1 % worse.
     pub alone: [f64; 2],
-    /// Least and greatest objective over the whole range, constraints aside; null where it does not rest somewhere.
+    /// Least and greatest objective over the whole range, constraints aside; null where it does not
+    /// rest somewhere.
     pub range: Option<[f64; 2]>,
-    /// What follows: every value is as good, a limit decides, a constraint does, or something is lost on either side.
+    /// What follows: every value is as good, a limit decides, a constraint does, or something is
+    /// lost on either side.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = Role::ALL.map(Role::name))))]
     pub role: String,
 }
@@ -411,8 +445,8 @@ pub struct Unit {
     pub seconds: [f64; 2],
     /// The same in units of time of each length.
     pub dimensionless: [f64; 2],
-    /// The best lengths of those that were tried between the limits, the rest as it is best, in m: by the rest time in seconds, and by that in units
-    /// of time.
+    /// The best lengths of those that were tried between the limits, the rest as it is best, in m:
+    /// by the rest time in seconds, and by that in units of time.
     pub best_lengths: [f64; 2],
 }
 
@@ -447,12 +481,19 @@ pub fn optimization(study: &Study) -> OptimizationDocument {
             .map(|finalist| Finalist {
                 run: finalist.run,
                 by_closed_forms: finalist.by_chain.clone(),
-                values: finalist.values.iter().map(|value| finite(Some(*value))).collect(),
+                values: finalist
+                    .values
+                    .iter()
+                    .map(|value| finite(Some(*value)))
+                    .collect(),
                 feasible: finalist.feasible,
                 design: design(study, &finalist.design),
             })
             .collect(),
-        papers_design: study.default_design.as_ref().map(|papers| design(study, papers)),
+        papers_design: study
+            .default_design
+            .as_ref()
+            .map(|papers| design(study, papers)),
         decision: study.decision.as_ref().map(decision),
         conclusions: optimization_sentences(study),
     }
@@ -462,21 +503,31 @@ fn searches(study: &Study) -> Vec<Search> {
     if study.question.objectives.len() > 1 {
         return vec![];
     }
-    let search = |name: &str, evaluations: f64, found: usize, spread: Option<optimize::Spread>| Search {
-        name: name.to_owned(),
-        evaluations,
-        found,
-        best: spread.map(|spread| spread.best),
-        lower_quartile: spread.map(|spread| spread.lower_quartile),
-        median: spread.map(|spread| spread.median),
-        upper_quartile: spread.map(|spread| spread.upper_quartile),
-        worst: spread.map(|spread| spread.worst),
-    };
+    let search =
+        |name: &str, evaluations: f64, found: usize, spread: Option<optimize::Spread>| Search {
+            name: name.to_owned(),
+            evaluations,
+            found,
+            best: spread.map(|spread| spread.best),
+            lower_quartile: spread.map(|spread| spread.lower_quartile),
+            median: spread.map(|spread| spread.median),
+            upper_quartile: spread.map(|spread| spread.upper_quartile),
+            worst: spread.map(|spread| spread.worst),
+        };
     let (evaluations, _) = study.evaluations();
     let each = evaluations as f64 / study.runs.len().max(1) as f64;
-    let own = search("genetic algorithm", each, study.values().len(), study.spread());
+    let own = search(
+        "genetic algorithm",
+        each,
+        study.values().len(),
+        study.spread(),
+    );
     let rivals = study.rivals.iter().map(|rival| {
-        let found = rival.values.iter().filter(|value| value.is_finite()).count();
+        let found = rival
+            .values
+            .iter()
+            .filter(|value| value.is_finite())
+            .count();
         search(rival.name, rival.evaluations as f64, found, rival.spread())
     });
     std::iter::once(own).chain(rivals).collect()
@@ -484,7 +535,9 @@ fn searches(study: &Study) -> Vec<Search> {
 
 fn design(study: &Study, design: &optimize::Design) -> Design {
     let variables = study.question.variables.iter().zip(&design.point);
-    let material = design.material.and_then(|number| study.question.materials.get(number));
+    let material = design
+        .material
+        .and_then(|number| study.question.materials.get(number));
     Design {
         variables: variables
             .map(|(variable, value)| (variable.parameter.name().to_owned(), *value))
@@ -576,7 +629,11 @@ impl Asked {
                 speed: of.speed,
             }),
             held_fixed: HeldFixed::of(question),
-            defaults: question.defaults.iter().map(|key| key.name().to_owned()).collect(),
+            defaults: question
+                .defaults
+                .iter()
+                .map(|key| key.name().to_owned())
+                .collect(),
             duration: question.settings.duration,
             rest_fraction: REST_FRACTION,
             step_tolerance: question.settings.relative_tolerance,
@@ -667,7 +724,9 @@ impl Genetic {
         let (penalty, weights) = match options.penalty {
             Penalty::Death => ("death", None),
             Penalty::FeasibleFirst => ("feasible-first", None),
-            Penalty::AugmentedLagrangian { initial, factor } => ("augmented-lagrangian", Some((initial, factor))),
+            Penalty::AugmentedLagrangian { initial, factor } => {
+                ("augmented-lagrangian", Some((initial, factor)))
+            }
         };
         Self {
             population: options.population,
@@ -785,12 +844,14 @@ pub fn record_line(run: &SearchRun) -> Result<String, RecordError> {
 }
 
 fn line(of: &impl Serialize) -> Result<String, RecordError> {
-    let text = serde_json::to_string(of).map_err(|error| RecordError::Unwritable(error.to_string()))?;
+    let text =
+        serde_json::to_string(of).map_err(|error| RecordError::Unwritable(error.to_string()))?;
     Ok(text + "\n")
 }
 
 fn asked(question: &Question) -> Result<Value, RecordError> {
-    serde_json::to_value(Asked::of(question)).map_err(|error| RecordError::Unwritable(error.to_string()))
+    serde_json::to_value(Asked::of(question))
+        .map_err(|error| RecordError::Unwritable(error.to_string()))
 }
 
 /// The runs of a record of the same search, and how many bytes of it are whole lines.
@@ -810,7 +871,10 @@ fn asked(question: &Question) -> Result<Value, RecordError> {
 /// assert_eq!(optimize(question, runs, &Watch::default())?, study);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn read_record(text: &str, question: &Question) -> Result<(Vec<SearchRun>, usize), RecordError> {
+pub fn read_record(
+    text: &str,
+    question: &Question,
+) -> Result<(Vec<SearchRun>, usize), RecordError> {
     let whole = text.rfind('\n').map_or(0, |place| place + 1);
     let mut lines = text[..whole].lines();
     let first = lines.next().ok_or(RecordError::NoRecord)?;
@@ -827,8 +891,9 @@ pub fn read_record(text: &str, question: &Question) -> Result<(Vec<SearchRun>, u
         let wrong = || RecordError::Line(index + 2);
         let run: Run = serde_json::from_str(line).map_err(|_| wrong())?;
         let run = run.read().ok_or_else(wrong)?;
-        let fits =
-            |found: &optimize::Found| found.point.len() == length && found.values.len() == question.objectives.len();
+        let fits = |found: &optimize::Found| {
+            found.point.len() == length && found.values.len() == question.objectives.len()
+        };
         if !run.found.iter().all(fits) || run.curve.is_empty() {
             return Err(wrong());
         }

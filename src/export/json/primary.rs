@@ -10,8 +10,9 @@ use crate::impact::Units;
 use crate::impact::primary::{Alone, Others, PrimaryImpact, PrimaryRow, PrimaryStop};
 use crate::report::{PrimaryReport, PrimarySweepReport};
 
-/// A main mass on spring and dashpot with a pendulum and its barriers. Time is in units of 1/omega, omega^2 = g/L, displacements of the
-/// main mass are over L, energies in units of m g L, angles in radians.
+/// A main mass on spring and dashpot with a pendulum and its barriers. Time is in units of 1/omega,
+/// omega^2 = g/L, displacements of the main mass are over L, energies in units of m g L, angles in
+/// radians.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -33,7 +34,8 @@ pub struct PrimaryDocument {
     pub impacts: Vec<PrimaryImpactDocument>,
     /// What became of the energy.
     pub energy: PrimaryEnergyDocument,
-    /// When the envelope of the main mass has fallen to a tenth, for good; null where it never does, and where a force drives it.
+    /// When the envelope of the main mass has fallen to a tenth, for good; null where it never
+    /// does, and where a force drives it.
     pub rest_time: Option<f64>,
     /// Why there is none; null where there is one.
     pub rest_reason: Option<String>,
@@ -100,7 +102,10 @@ pub struct PrimarySample {
 /// An impact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "PrimaryImpact"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "PrimaryImpact")
+)]
 pub struct PrimaryImpactDocument {
     /// The barrier: `left` or `right`.
     pub side: String,
@@ -108,7 +113,8 @@ pub struct PrimaryImpactDocument {
     pub entry_time: f64,
     /// When it is left; null where the run ends before.
     pub exit_time: Option<f64>,
-    /// The speed of the pendulum towards the barrier at the touch; where the motion starts inside it, the speed inwards then.
+    /// The speed of the pendulum towards the barrier at the touch; where the motion starts inside
+    /// it, the speed inwards then.
     pub speed_in: f64,
     /// Its speed away from it at the release; null where the run ends before.
     pub speed_out: Option<f64>,
@@ -150,13 +156,15 @@ pub struct AloneDocument {
     pub mass: f64,
     /// Its angular frequency, damped; 0 where it creeps.
     pub frequency: f64,
-    /// When its envelope has fallen to a tenth; null where it never does, creeps, or a force drives it.
+    /// When its envelope has fallen to a tenth; null where it never does, creeps, or a force drives
+    /// it.
     pub rest_time: Option<f64>,
     /// Its amplitude in the long run; null where no force drives it.
     pub amplitude: Option<f64>,
 }
 
-/// Many runs of a main mass with its pendulum, over every combination of the values of some parameters. Units as in kind `primary`.
+/// Many runs of a main mass with its pendulum, over every combination of the values of some
+/// parameters. Units as in kind `primary`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -164,7 +172,8 @@ pub struct PrimarySweepDocument {
     /// The kind of document.
     #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::PrimarySweep.schema())))]
     pub schema: String,
-    /// The parameters that are varied, in SI units unless they are numbers of equation (7); the last varies fastest.
+    /// The parameters that are varied, in SI units unless they are numbers of equation (7); the
+    /// last varies fastest.
     pub axes: Vec<Axis>,
     /// One unit of time, in seconds; null where the runs differ in it.
     pub time_unit: Option<f64>,
@@ -183,19 +192,24 @@ pub struct PrimarySweepRow {
     pub values: Vec<f64>,
     /// eta, the frequency of the force over omega.
     pub frequency: f64,
-    /// The largest displacement in the last quarter of the run, with its damper; null for a run that was stopped before it began.
+    /// The largest displacement in the last quarter of the run, with its damper; null for a run
+    /// that was stopped before it began.
     pub amplitude: Option<f64>,
-    /// The amplitude in the long run with the damper locked; null at an undamped resonance, and where no force drives it.
+    /// The amplitude in the long run with the damper locked; null at an undamped resonance, and
+    /// where no force drives it.
     pub locked: Option<f64>,
     /// That amplitude without the damper.
     pub without: Option<f64>,
-    /// The number of impacts in the last quarter of the run; null for a run that was stopped before it began.
+    /// The number of impacts in the last quarter of the run; null for a run that was stopped before
+    /// it began.
     pub impacts: Option<usize>,
     /// The number of impacts in the whole run; null likewise.
     pub all_impacts: Option<usize>,
-    /// When the envelope of the main mass has fallen to a tenth, for good; null where it never does, and where a force drives it.
+    /// When the envelope of the main mass has fallen to a tenth, for good; null where it never
+    /// does, and where a force drives it.
     pub rest_time: Option<f64>,
-    /// The rest time with the damper locked; null where it never rests, creeps, or a force drives it.
+    /// The rest time with the damper locked; null where it never rests, creeps, or a force drives
+    /// it.
     pub rest_locked: Option<f64>,
     /// The rest time without the damper; null likewise.
     pub rest_without: Option<f64>,
@@ -349,7 +363,13 @@ pub fn primary_sweep(report: &PrimarySweepReport) -> PrimarySweepDocument {
             complete: row.stop == PrimaryStop::Duration,
         }
     };
-    let rows: Vec<PrimarySweepRow> = report.rows.iter().zip(report.units).enumerate().map(row).collect();
+    let rows: Vec<PrimarySweepRow> = report
+        .rows
+        .iter()
+        .zip(report.units)
+        .enumerate()
+        .map(row)
+        .collect();
     let common = |unit: fn(&PrimarySweepRow) -> f64| {
         let first = rows.first().map(unit)?;
         rows.iter().all(|row| unit(row) == first).then_some(first)

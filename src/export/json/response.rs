@@ -1,4 +1,5 @@
-//! Kind `response`: all steady states of an oscillator, driven or self-excited, with their stability.
+//! Kind `response`: all steady states of an oscillator, driven or self-excited, with their
+//! stability.
 
 #[cfg(feature = "schema")]
 use schemars::JsonSchema;
@@ -12,7 +13,8 @@ use crate::response::slow::SlowResponse;
 use crate::response::{self, Response};
 use crate::verify::Verdict;
 
-/// Steady states of an oscillator, driven or self-excited, as a parameter varies. Units are those of the equation and the values given.
+/// Steady states of an oscillator, driven or self-excited, as a parameter varies. Units are those
+/// of the equation and the values given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -28,13 +30,15 @@ pub struct ResponseDocument {
     pub parameter: String,
     /// Its lowest and its highest value.
     pub range: [f64; 2],
-    /// How the branches were found: `harmonic-balance`, or `period-map` where the force has jumps that harmonic balance does not take.
+    /// How the branches were found: `harmonic-balance`, or `period-map` where the force has jumps
+    /// that harmonic balance does not take.
     pub method: String,
     /// The highest harmonic kept.
     pub harmonics: usize,
     /// How many periods of the drive a period of the motion takes.
     pub periods: usize,
-    /// theta/t: the frequency of the motion, that of the drive over `periods`; a name where nothing drives it.
+    /// theta/t: the frequency of the motion, that of the drive over `periods`; a name where nothing
+    /// drives it.
     pub frequency: String,
     /// Whether nothing drives the motion: each point then has a frequency of its own.
     pub self_excited: bool,
@@ -42,19 +46,23 @@ pub struct ResponseDocument {
     pub undamped: bool,
     /// The branches, each a list of points in order.
     pub branches: Vec<Vec<ResponsePoint>>,
-    /// Of each branch whether -x half a period of the drive later is a branch as well, which is not listed.
+    /// Of each branch whether -x half a period of the drive later is a branch as well, which is not
+    /// listed.
     pub mirrored: Vec<bool>,
-    /// Of each point of a branch the part of a period in which dry friction holds it; empty for a branch that nothing holds.
+    /// Of each point of a branch the part of a period in which dry friction holds it; empty for a
+    /// branch that nothing holds.
     pub stuck: Vec<Vec<f64>>,
     /// Where branches change.
     pub bifurcations: Vec<ResponseBifurcation>,
-    /// Folds of the balance that are none of the true motion and not among those places. Left out where there are none.
+    /// Folds of the balance that are none of the true motion and not among those places. Left out
+    /// where there are none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ripple: Option<RippleDocument>,
-    /// The free motion without damping, a list of points for each stable place of rest; empty where the frequency of the drive does not
-    /// vary.
+    /// The free motion without damping, a list of points for each stable place of rest; empty where
+    /// the frequency of the drive does not vary.
     pub backbone: Vec<Vec<BackbonePoint>>,
-    /// The steady motions by slow equations of amplitude and phase, where a method with such equations was asked for; else null.
+    /// The steady motions by slow equations of amplitude and phase, where a method with such
+    /// equations was asked for; else null.
     pub modulation: Option<SlowDocument>,
     /// Simulations that were let go beside stable points and have settled.
     pub simulated: Vec<SimulatedPoint>,
@@ -81,22 +89,26 @@ pub struct ResponsePoint {
     pub phase: f64,
     /// Half of the way from the lowest to the highest point of the motion.
     pub peak: f64,
-    /// Whether small disturbances die out: both multipliers lie inside the unit circle, of a self-excited motion the first; null where
-    /// they could not be found.
+    /// Whether small disturbances die out: both multipliers lie inside the unit circle, of a
+    /// self-excited motion the first; null where they could not be found.
     pub stable: Option<bool>,
-    /// The multipliers of a period, each its real and imaginary part, the larger first, of a self-excited motion the one along it, which
-    /// is 1, last; null where they could not be found.
+    /// The multipliers of a period, each its real and imaginary part, the larger first, of a
+    /// self-excited motion the one along it, which is 1, last; null where they could not be found.
     pub multipliers: Option<[[f64; 2]; 2]>,
     /// Position and velocity at t = 0, by shooting where that found the true motion.
     pub start: [f64; 2],
-    /// The error of amplitude or peak, the larger, over the true peak, or that of the frequency; null where no true motion was found near.
+    /// The error of amplitude or peak, the larger, over the true peak, or that of the frequency;
+    /// null where no true motion was found near.
     pub error: Option<f64>,
 }
 
 /// Steady motions by slow equations.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SlowResponse"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "SlowResponse")
+)]
 pub struct SlowDocument {
     /// The method: `multiple-scales`.
     pub method: String,
@@ -110,12 +122,14 @@ pub struct SlowDocument {
     pub definitions: Map<String>,
     /// The steady motions, by the parameter.
     pub states: Vec<SlowPoint>,
-    /// The largest error of the amplitude at the stable points of the branches, over the amplitude; null where there is none.
+    /// The largest error of the amplitude at the stable points of the branches, over the amplitude;
+    /// null where there is none.
     pub largest_error: Option<f64>,
     /// Stable points of the branches near which the slow equations have no stable motion.
     pub missing: usize,
-    /// Steady motions of the truncated slow equations that are left out, at all values of the parameter together: at their amplitude the
-    /// last order is more than half of the one before it. Left out where there are none.
+    /// Steady motions of the truncated slow equations that are left out, at all values of the
+    /// parameter together: at their amplitude the last order is more than half of the one before
+    /// it. Left out where there are none.
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub spurious: usize,
     /// Whether the error is within the tolerance and no more than one point in twenty is missing.
@@ -140,10 +154,9 @@ pub struct SlowPoint {
 
 fn slow(slow: &SlowResponse) -> SlowDocument {
     let solution = &slow.solution;
-    let rates = solution
-        .modulation
-        .as_ref()
-        .map(|modulation| [&modulation.amplitude_rate, &modulation.phase_rate].map(ToString::to_string));
+    let rates = solution.modulation.as_ref().map(|modulation| {
+        [&modulation.amplitude_rate, &modulation.phase_rate].map(ToString::to_string)
+    });
     let [amplitude_rate, phase_rate] = rates.unwrap_or_default();
     let definitions = solution.definitions.iter();
     SlowDocument {
@@ -152,7 +165,12 @@ fn slow(slow: &SlowResponse) -> SlowDocument {
         amplitude_rate,
         phase_rate,
         definitions: definitions
-            .map(|definition| (definition.symbol.to_string(), definition.meaning.to_string()))
+            .map(|definition| {
+                (
+                    definition.symbol.to_string(),
+                    definition.meaning.to_string(),
+                )
+            })
             .collect(),
         states: slow
             .states
@@ -176,8 +194,9 @@ fn slow(slow: &SlowResponse) -> SlowDocument {
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ResponseBifurcation {
-    /// What happens: the branch turns back, another one crosses, motions of twice the period come off, a second frequency comes in, a
-    /// self-excited motion is born from rest, motions of every amplitude at one value of the parameter.
+    /// What happens: the branch turns back, another one crosses, motions of twice the period come
+    /// off, a second frequency comes in, a self-excited motion is born from rest, motions of every
+    /// amplitude at one value of the parameter.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = KINDS)))]
     pub kind: String,
     /// The branch, counted from 0.
@@ -226,14 +245,18 @@ pub struct SimulatedPoint {
     pub amplitude: f64,
     /// Half of peak to peak.
     pub peak: f64,
-    /// The error of the point of the branch against it, over its peak; or that of the frequency, if it is larger.
+    /// The error of the point of the branch against it, over its peak; or that of the frequency, if
+    /// it is larger.
     pub error: f64,
 }
 
 /// Folds of the balance alone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "ResponseRipple"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "ResponseRipple")
+)]
 pub struct RippleDocument {
     /// How many they are.
     pub folds: usize,
@@ -248,8 +271,8 @@ pub struct RippleDocument {
 pub struct ElsewherePoint {
     /// The value of the parameter that varies.
     pub parameter: f64,
-    /// After how many periods of the motion it repeats itself, 1 where harmonic balance has not come to it; null where it does not within
-    /// eight.
+    /// After how many periods of the motion it repeats itself, 1 where harmonic balance has not
+    /// come to it; null where it does not within eight.
     pub periods: Option<usize>,
 }
 
@@ -277,7 +300,9 @@ fn point(point: &response::Point) -> ResponsePoint {
         phase: point.phase,
         peak: point.peak,
         stable: point.stable,
-        multipliers: point.multipliers.map(|both| both.map(|one| [one.re, one.im])),
+        multipliers: point
+            .multipliers
+            .map(|both| both.map(|one| [one.re, one.im])),
         start: point.start,
         error: point.error,
     }
@@ -339,7 +364,11 @@ pub fn response(response: &Response) -> ResponseDocument {
             .iter()
             .map(|branch| branch.points.iter().map(point).collect())
             .collect(),
-        mirrored: response.branches.iter().map(|branch| branch.mirrored).collect(),
+        mirrored: response
+            .branches
+            .iter()
+            .map(|branch| branch.mirrored)
+            .collect(),
         stuck: response.branches.iter().map(stuck).collect(),
         bifurcations: response.bifurcations.iter().map(bifurcation).collect(),
         ripple: response.ripple.map(|ripple| RippleDocument {

@@ -104,8 +104,9 @@ impl Kind {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
-    /// The JSON Schema, draft 2020-12, of documents of this kind: every key with its meaning, no other key allowed. It is kept as a file
-    /// in `src/export/json/schemas/`, which a test holds to the types that write and read the documents.
+    /// The JSON Schema, draft 2020-12, of documents of this kind: every key with its meaning, no
+    /// other key allowed. It is kept as a file in `src/export/json/schemas/`, which a test holds to
+    /// the types that write and read the documents.
     ///
     /// ```
     /// use lindstedt::export::json::Kind;

@@ -8,8 +8,8 @@ use super::Kind;
 use crate::export::simulation::{COMPARED, Report, friction, notes, phases};
 use crate::impact::{self, ClosedForm, Friction, Integrator, Piece, Regime, Side};
 
-/// One run of the paper's equation (7), event by event. Angles are in radians, time is in units of 1/omega of small swings,
-/// sqrt(L/g), energies in units of m g L.
+/// One run of the paper's equation (7), event by event. Angles are in radians, time is in units of
+/// 1/omega of small swings, sqrt(L/g), energies in units of m g L.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -19,11 +19,13 @@ pub struct SimulationDocument {
     pub schema: String,
     /// The numbers of the problem.
     pub parameters: Parameters,
-    /// What damps, each damping in every form; null where only the numbers of equation (7) are known.
+    /// What damps, each damping in every form; null where only the numbers of equation (7) are
+    /// known.
     pub dissipation: Option<Dissipation>,
     /// The unit of time sqrt(L/g), in seconds; null where mass, length and gravity are not known.
     pub time_unit: Option<f64>,
-    /// The integrator of the run: `taylor` with the contact in a variable in which it is analytic, or `runge-kutta` phase by phase.
+    /// The integrator of the run: `taylor` with the contact in a variable in which it is analytic,
+    /// or `runge-kutta` phase by phase.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = INTEGRATORS.map(integrator))))]
     pub integrator: String,
     /// How the motion was found: by `integration`, or as a `chain` of closed forms.
@@ -37,24 +39,30 @@ pub struct SimulationDocument {
     pub samples: Vec<Sample>,
     /// Every contact with a barrier, in time.
     pub impacts: Vec<Impact>,
-    /// The place of rest from which amplitudes are counted, in rad: 0, unless a barrier holds the pendulum elsewhere or it has turned over.
+    /// The place of rest from which amplitudes are counted, in rad: 0, unless a barrier holds the
+    /// pendulum elsewhere or it has turned over.
     pub place_of_rest: f64,
-    /// When the envelope of the amplitude falls to a tenth of the first swing, in units of time; null where it does not.
+    /// When the envelope of the amplitude falls to a tenth of the first swing, in units of time;
+    /// null where it does not.
     pub rest_time: Option<f64>,
     /// The same in seconds; null where there is none, or where units are not known.
     pub rest_time_in_seconds: Option<f64>,
     /// Why there is no rest time, in words; null where there is one.
     pub rest_reason: Option<String>,
-    /// The last time at which x is a tenth of the first swing away from the place of rest, in units of time; null where it never is.
+    /// The last time at which x is a tenth of the first swing away from the place of rest, in units
+    /// of time; null where it never is.
     pub last_crossing: Option<f64>,
-    /// The rest times of the same swing; null where nothing damps it, where it hits nothing, or where the pivot moves.
+    /// The rest times of the same swing; null where nothing damps it, where it hits nothing, or
+    /// where the pivot moves.
     pub baseline: Option<Baseline>,
-    /// The energy and the work of each force; of a chain by its formulas, whose velocities are near and do not close the books.
+    /// The energy and the work of each force; of a chain by its formulas, whose velocities are near
+    /// and do not close the books.
     pub energy: Energy,
-    /// The largest energy that no work accounts for, as a fraction of the largest energy met; of a chain that of its velocities.
+    /// The largest energy that no work accounts for, as a fraction of the largest energy met; of a
+    /// chain that of its velocities.
     pub energy_residual: f64,
-    /// The time until which the motion is known to six digits; beyond it a start displaced by 1e-12 of it leads elsewhere. Left out where it
-    /// is known to the end.
+    /// The time until which the motion is known to six digits; beyond it a start displaced by 1e-12
+    /// of it leads elsewhere. Left out where it is known to the end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub known_until: Option<f64>,
     /// Why the run ended, in words.
@@ -63,13 +71,15 @@ pub struct SimulationDocument {
     pub complete: bool,
     /// The number of steps of the integrator.
     pub steps: usize,
-    /// The same run by the other integrator, or of a chain by Taylor series; null where it was not asked for.
+    /// The same run by the other integrator, or of a chain by Taylor series; null where it was not
+    /// asked for.
     pub judge: Option<Judge>,
     /// What should be known beside the numbers, in words.
     pub notes: Vec<String>,
 }
 
-/// Rest times of the same swing, in units of time; null where it does not come to rest in four times the duration of the run.
+/// Rest times of the same swing, in units of time; null where it does not come to rest in four
+/// times the duration of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -84,7 +94,8 @@ pub struct Baseline {
     pub geometry: Option<Geometry>,
 }
 
-/// By how much sooner a swing cut at the barrier rests under viscous damping: ln(first_swing/at_rest)/(2 zeta).
+/// By how much sooner a swing cut at the barrier rests under viscous damping:
+/// ln(first_swing/at_rest)/(2 zeta).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -164,13 +175,16 @@ pub struct ContactDissipation {
     pub lambda: Option<f64>,
     /// c of the force (k + c d') d^(3/2), in N s/m^(5/2); null where units are not known.
     pub damping: Option<f64>,
-    /// The coefficient of restitution at `touch_speed`, dimensionless; null where no barrier is touched.
+    /// The coefficient of restitution at `touch_speed`, dimensionless; null where no barrier is
+    /// touched.
     pub restitution: Option<f64>,
-    /// The speed of the first touch without damping, in radians per unit of time; null where no barrier is touched.
+    /// The speed of the first touch without damping, in radians per unit of time; null where no
+    /// barrier is touched.
     pub touch_speed: Option<f64>,
     /// The restitution that is given, dimensionless; null where another form is.
     pub stated_restitution: Option<f64>,
-    /// The speed at which that is stated, in radians per unit of time; null where another form is given.
+    /// The speed at which that is stated, in radians per unit of time; null where another form is
+    /// given.
     pub at_speed: Option<f64>,
     /// The speed in m/s; left out if the file states no such speed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -187,7 +201,8 @@ pub struct ViscousDissipation {
     pub held_fixed: String,
     /// The fraction zeta of the critical damping.
     pub zeta: f64,
-    /// The coefficient c = 2 zeta m omega of a force against the velocity of the bob, in N s/m; null where units are not known.
+    /// The coefficient c = 2 zeta m omega of a force against the velocity of the bob, in N s/m;
+    /// null where units are not known.
     pub viscous: Option<f64>,
 }
 
@@ -283,7 +298,8 @@ pub struct Impact {
     pub entry_time: f64,
     /// When it is left, in units of time; null where the run ended before.
     pub exit_time: Option<f64>,
-    /// The speed at the touch, in radians per unit of time; of a motion that starts inside the barrier its speed inwards then.
+    /// The speed at the touch, in radians per unit of time; of a motion that starts inside the
+    /// barrier its speed inwards then.
     pub speed_in: f64,
     /// The speed at the release, in radians per unit of time; null where the run ended before.
     pub speed_out: Option<f64>,
@@ -291,12 +307,14 @@ pub struct Impact {
     pub penetration: f64,
     /// speed_out / speed_in; null for a contact that did not begin with a touch, or did not end.
     pub restitution: Option<f64>,
-    /// The energy that the motion has lost between touch and release, in units of m g L; null where the run ended before.
+    /// The energy that the motion has lost between touch and release, in units of m g L; null where
+    /// the run ended before.
     pub energy_lost: Option<f64>,
     /// Which barrier it is.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = [Side::Left.name(), Side::Right.name()])))]
     pub side: String,
-    /// How far it is from the same contact by integration; null unless it is of a chain that was judged, and the integration has it.
+    /// How far it is from the same contact by integration; null unless it is of a chain that was
+    /// judged, and the integration has it.
     pub error: Option<ImpactError>,
 }
 
@@ -322,14 +340,16 @@ pub struct ImpactError {
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ChainPhase {
-    /// What happens: `swing`, `contact`, `rest` where dry friction holds the pendulum, or `integrated` where there is no formula.
+    /// What happens: `swing`, `contact`, `rest` where dry friction holds the pendulum, or
+    /// `integrated` where there is no formula.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = ["swing", "contact", "rest", "integrated"])))]
     pub name: String,
     /// When it begins, in units of time.
     pub start: f64,
     /// When it ends, in units of time.
     pub end: f64,
-    /// x in radians as a function of t, the time since the beginning of the phase; null where there is no formula.
+    /// x in radians as a function of t, the time since the beginning of the phase; null where there
+    /// is no formula.
     pub closed_form: Option<String>,
     /// The numbers of the formula of a swing; null for another phase.
     pub swing: Option<SwingForm>,
@@ -337,7 +357,8 @@ pub struct ChainPhase {
     pub contact: Option<ContactForm>,
 }
 
-/// x(t) = 2 sign asin(modulus exp(-rate t) sn(speed t + phase, parameter)), sn of Jacobi with the parameter k^2.
+/// x(t) = 2 sign asin(modulus exp(-rate t) sn(speed t + phase, parameter)), sn of Jacobi with the
+/// parameter k^2.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -424,7 +445,11 @@ pub struct Difference {
 /// The routes by which a motion is found.
 pub(super) const ROUTES: [&str; 2] = ["integration", "chain"];
 
-const INTEGRATORS: [Integrator; 3] = [Integrator::Taylor, Integrator::RungeKutta, Integrator::Chain];
+const INTEGRATORS: [Integrator; 3] = [
+    Integrator::Taylor,
+    Integrator::RungeKutta,
+    Integrator::Chain,
+];
 
 /// The document of kind `simulation`.
 ///
@@ -475,13 +500,16 @@ pub fn simulation(report: &Report) -> SimulationDocument {
         time_unit: report.units.map(impact::Units::time),
         integrator: integrator(motion.integrator).to_owned(),
         route: motion.integrator.route().to_owned(),
-        phases: (motion.integrator == Integrator::Chain).then(|| phases(motion).iter().map(phase).collect()),
+        phases: (motion.integrator == Integrator::Chain)
+            .then(|| phases(motion).iter().map(phase).collect()),
         final_state: final_state(motion),
         samples: report.samples.iter().map(sample).collect(),
         impacts: impacts(report),
         place_of_rest: rest.place,
         rest_time: rest.time.ok(),
-        rest_time_in_seconds: report.units.and_then(|units| Some(rest.time.ok()? * units.time())),
+        rest_time_in_seconds: report
+            .units
+            .and_then(|units| Some(rest.time.ok()? * units.time())),
         rest_reason: rest.time.err().map(|reason| reason.to_string()),
         last_crossing: rest.last_crossing,
         baseline: report.baseline.map(|baseline| Baseline {
@@ -515,7 +543,9 @@ pub fn simulation(report: &Report) -> SimulationDocument {
 /// Every contact; of a chain that is judged, with its errors.
 fn impacts(report: &Report) -> Vec<Impact> {
     let motion = report.motion;
-    let judge = report.judge.filter(|_| motion.integrator == Integrator::Chain);
+    let judge = report
+        .judge
+        .filter(|_| motion.integrator == Integrator::Chain);
     let errors = judge.map_or_else(Vec::new, |judge| motion.contact_deviations(judge));
     let errors = errors.into_iter().chain(std::iter::repeat(None));
     let error = |error: impact::ContactDeviation| ImpactError {

@@ -14,14 +14,15 @@ use crate::expr::{Equation, parse_equation};
 use crate::series::FourierSeries;
 use crate::series::singularity::{self, Singularity};
 use crate::solution::{
-    self, AmplitudeConvention, ClosedForm, Definition, Degrees, Law, LeadingCycle, Method, Note, Root, Solution,
-    modulation,
+    self, AmplitudeConvention, ClosedForm, Definition, Degrees, Law, LeadingCycle, Method, Note,
+    Root, Solution, modulation,
 };
 use crate::symbol::Symbol;
 use crate::verify;
 
-/// A formula for the frequency and the motion of an oscillator. Of the laws of the frequency take the first that is not null:
-/// `frequency_squared`, `relation`, `closed_form`, `frequency`, `by_quadrature`, `system`; that is the one that is judged.
+/// A formula for the frequency and the motion of an oscillator. Of the laws of the frequency take
+/// the first that is not null: `frequency_squared`, `relation`, `closed_form`, `frequency`,
+/// `by_quadrature`, `system`; that is the one that is judged.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -29,38 +30,48 @@ pub struct SolutionDocument {
     /// The kind of document.
     #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Solution.schema())))]
     pub schema: String,
-    /// The equation of motion as it was understood, `... = 0`; time is its own, so frequencies are in radians per unit of it.
+    /// The equation of motion as it was understood, `... = 0`; time is its own, so frequencies are
+    /// in radians per unit of it.
     pub equation: String,
     /// The method that derived it, by its name on the command line.
-    #[cfg_attr(feature = "schema", schemars(schema_with = "super::generated_schema::methods"))]
+    #[cfg_attr(
+        feature = "schema",
+        schemars(schema_with = "super::generated_schema::methods")
+    )]
     pub method: String,
-    /// The highest power kept of the small parameter, inclusive; for a balance the number of harmonics, for iterations the passes.
+    /// The highest power kept of the small parameter, inclusive; for a balance the number of
+    /// harmonics, for iterations the passes.
     pub order: u32,
-    /// The degrees of an approximant, of numerator and denominator or of P, Q and R; null for every other method.
+    /// The degrees of an approximant, of numerator and denominator or of P, Q and R; null for every
+    /// other method.
     pub degrees: Option<Vec<u32>>,
     /// The symbol in which the expansion runs: a parameter, or the symbol of the amplitude.
     pub small_parameter: String,
-    /// What the amplitude measures: `initial` is `A` = x(0) minus the equilibrium with x'(0) = 0, `first-harmonic` is `a`, the
-    /// amplitude of the first harmonic. It has the unit of the coordinate.
+    /// What the amplitude measures: `initial` is `A` = x(0) minus the equilibrium with x'(0) = 0,
+    /// `first-harmonic` is `a`, the amplitude of the first harmonic. It has the unit of the
+    /// coordinate.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = [AmplitudeConvention::Initial.name(), AmplitudeConvention::FirstHarmonic.name()])))]
     pub amplitude: String,
     /// The parameters of the equation, in alphabetical order.
     pub parameters: Vec<String>,
-    /// Symbols that the program introduced, each with the expression that it stands for, which may use those before it; their
-    /// values are in `verification.values`.
+    /// Symbols that the program introduced, each with the expression that it stands for, which may
+    /// use those before it; their values are in `verification.values`.
     pub definitions: Map<String>,
-    /// The equilibrium about which the motion swings, in the unit of the coordinate; its value is null where it has symbols.
+    /// The equilibrium about which the motion swings, in the unit of the coordinate; its value is
+    /// null where it has symbols.
     pub equilibrium: Constant,
-    /// omega, the angular frequency, as a polynomial; null where the method gives none. Where `frequency_squared` or `relation`
-    /// stands beside it, those are judged, not this one.
+    /// omega, the angular frequency, as a polynomial; null where the method gives none. Where
+    /// `frequency_squared` or `relation` stands beside it, those are judged, not this one.
     pub frequency: Option<Polynomial>,
-    /// omega^2 as a polynomial; null where the method gives none. It is judged before `frequency`, of which it is no exact square.
+    /// omega^2 as a polynomial; null where the method gives none. It is judged before `frequency`,
+    /// of which it is no exact square.
     pub frequency_squared: Option<Polynomial>,
-    /// A polynomial in even powers of `omega` that is zero: omega is its root that continues the linear frequency from amplitude
-    /// zero; null where the law is explicit.
+    /// A polynomial in even powers of `omega` that is zero: omega is its root that continues the
+    /// linear frequency from amplitude zero; null where the law is explicit.
     pub relation: Option<Polynomial>,
-    /// The law as text where it is no polynomial, `omega^2 = ...` or `omega = ...`; null otherwise. K is the complete elliptic
-    /// integral of the first kind of the parameter m = k^2, not of the modulus k; J0, J1, I0, I1 are Bessel functions.
+    /// The law as text where it is no polynomial, `omega^2 = ...` or `omega = ...`; null otherwise.
+    /// K is the complete elliptic integral of the first kind of the parameter m = k^2, not of the
+    /// modulus k; J0, J1, I0, I1 are Bessel functions.
     pub closed_form: Option<String>,
     /// The law as text where only numbers solve it: integrals, separated by `; `; null otherwise.
     pub by_quadrature: Option<String>,
@@ -68,23 +79,28 @@ pub struct SolutionDocument {
     pub system: Option<System>,
     /// The motion x(t), the equilibrium included: add nothing to it.
     pub displacement: Displacement,
-    /// The motion x(t) from rest at the amplitude as text, the equilibrium included, where it is known in closed form: an expression in
-    /// `t`, the amplitude, the parameters and the definitions. sn(u, m), cn(u, m) and dn(u, m) are the elliptic functions of Jacobi of
-    /// the parameter m = k^2, not of the modulus k. Left out for any other.
+    /// The motion x(t) from rest at the amplitude as text, the equilibrium included, where it is
+    /// known in closed form: an expression in `t`, the amplitude, the parameters and the
+    /// definitions. sn(u, m), cn(u, m) and dn(u, m) are the elliptic functions of Jacobi of the
+    /// parameter m = k^2, not of the modulus k. Left out for any other.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub closed_motion: Option<String>,
-    /// The limit cycle of a self-excited equation, whose amplitude the equation determines; null for any other.
+    /// The limit cycle of a self-excited equation, whose amplitude the equation determines; null
+    /// for any other.
     pub limit_cycle: Option<LimitCycle>,
-    /// The slow equations of amplitude and phase of a motion that is not periodic; null for any other.
+    /// The slow equations of amplitude and phase of a motion that is not periodic; null for any
+    /// other.
     pub modulation: Option<Modulation>,
-    /// The steady motions of a driven equation; null for any other. `frequency` is then the backbone, the frequency of the motion
-    /// itself without damping and drive, and `displacement` its leading term: the whole motion is `response.motion`.
+    /// The steady motions of a driven equation; null for any other. `frequency` is then the
+    /// backbone, the frequency of the motion itself without damping and drive, and `displacement`
+    /// its leading term: the whole motion is `response.motion`.
     pub response: Option<Response>,
     /// Whether coefficients are rounded to fifteen digits, because the equilibrium is no fraction.
     pub numerical: bool,
     /// What is known of where the formula holds, in words.
     pub validity: Vec<String>,
-    /// How far the series of omega^2 converges, by its own coefficients; left out where they are too few or show no law.
+    /// How far the series of omega^2 converges, by its own coefficients; left out where they are
+    /// too few or show no law.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub convergence: Option<Convergence>,
     /// The derivation line by line, as text; left out where it was not asked for.
@@ -94,16 +110,19 @@ pub struct SolutionDocument {
     pub verification: Option<Verification>,
 }
 
-/// The nearest singularity of a series, or a pair of conjugate ones, in the complex plane of its variable.
+/// The nearest singularity of a series, or a pair of conjugate ones, in the complex plane of its
+/// variable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Convergence {
-    /// What the series runs in: the powers of the small parameter and of the symbols that enter in step with it, multiplied.
+    /// What the series runs in: the powers of the small parameter and of the symbols that enter in
+    /// step with it, multiplied.
     pub variable: Map<i32>,
     /// The highest power of the variable in the series.
     pub highest: usize,
-    /// The distance of the singularity from zero: the series converges where the variable is smaller.
+    /// The distance of the singularity from zero: the series converges where the variable is
+    /// smaller.
     pub radius: Estimate,
     /// Its angle in radians, in the upper half plane.
     pub angle: Estimate,
@@ -111,8 +130,8 @@ pub struct Convergence {
     pub real: Estimate,
     /// The imaginary part of its place, which stands with both signs.
     pub imaginary: Estimate,
-    /// The power of the distance with which the period is singular there: 1/2 for a square root, 0 for a logarithm; null where it could
-    /// not be told.
+    /// The power of the distance with which the period is singular there: 1/2 for a square root, 0
+    /// for a logarithm; null where it could not be told.
     pub exponent: Option<Estimate>,
 }
 
@@ -155,7 +174,9 @@ impl Convergence {
         let [real, imaginary] = nearest.place.each_ref().map(Estimate::of);
         let powers = convergence.variable.factors().iter();
         Self {
-            variable: powers.map(|(name, power)| (name.to_string(), *power)).collect(),
+            variable: powers
+                .map(|(name, power)| (name.to_string(), *power))
+                .collect(),
             highest: convergence.highest,
             radius: Estimate::of(&nearest.radius),
             angle: Estimate::of(&nearest.angle),
@@ -198,12 +219,13 @@ pub struct System {
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Displacement {
-    /// The name of the angle, `theta`, or `phi` where the equation has a `theta` of its own: theta = omega t + `verification.phase`, in radians.
+    /// The name of the angle, `theta`, or `phi` where the equation has a `theta` of its own: theta
+    /// = omega t + `verification.phase`, in radians.
     #[cfg_attr(feature = "schema", schemars(extend("pattern" = "^(theta|phi_*)$")))]
     pub variable: String,
-    /// x = sum of cos * cos(harmonic theta) + sin * sin(harmonic theta), lowest harmonic first, the equilibrium in harmonic 0;
-    /// empty where only `verification.motion` has the motion. Of a driven answer the part with the first harmonic: `response.motion` has
-    /// the whole.
+    /// x = sum of cos * cos(harmonic theta) + sin * sin(harmonic theta), lowest harmonic first, the
+    /// equilibrium in harmonic 0; empty where only `verification.motion` has the motion. Of a
+    /// driven answer the part with the first harmonic: `response.motion` has the whole.
     pub harmonics: Vec<Harmonic>,
 }
 
@@ -225,7 +247,8 @@ pub struct Harmonic {
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct LimitCycle {
-    /// Its amplitude, as `amplitude` of the solution says, in the unit of the coordinate; to leading order where the motion is left out.
+    /// Its amplitude, as `amplitude` of the solution says, in the unit of the coordinate; to
+    /// leading order where the motion is left out.
     pub amplitude: Polynomial,
     /// Which of the `cycles` it is, counted from one.
     pub number: usize,
@@ -242,15 +265,16 @@ pub struct LimitCycle {
 pub struct Cycle {
     /// Its amplitude where the small parameters vanish, in the unit of the coordinate.
     pub amplitude: Constant,
-    /// An expression: where it is positive the cycle attracts, where it is negative it repels; null at a multiple root, where
-    /// nothing is said.
+    /// An expression: where it is positive the cycle attracts, where it is negative it repels; null
+    /// at a multiple root, where nothing is said.
     pub attracts_where_positive: Option<String>,
     /// The same in words.
     pub stability: String,
 }
 
-/// The slow equations of amplitude and phase, in time derivatives: the motion is `displacement` with theta = phase, or for a driven
-/// motion theta = (times_driving * driving_frequency * t - phase)/times_linear.
+/// The slow equations of amplitude and phase, in time derivatives: the motion is `displacement`
+/// with theta = phase, or for a driven motion theta = (times_driving * driving_frequency * t -
+/// phase)/times_linear.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -273,12 +297,14 @@ pub struct Modulation {
     pub transient: Option<Transient>,
     /// The amplitudes other than zero that stay, smallest first.
     pub steady: Vec<Cycle>,
-    /// Where `displacement` of the solution is the motion on a limit cycle: the motion from a start, with theta = phase; else null.
+    /// Where `displacement` of the solution is the motion on a limit cycle: the motion from a
+    /// start, with theta = phase; else null.
     #[serde(default)]
     pub motion: Option<Displacement>,
 }
 
-/// A driving frequency near a multiple of the linear one: times_driving * driving_frequency = times_linear * omega0 + detuning.
+/// A driving frequency near a multiple of the linear one: times_driving * driving_frequency =
+/// times_linear * omega0 + detuning.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -295,38 +321,45 @@ pub struct Resonance {
     pub detuning_means: String,
 }
 
-/// What is known of the steady motions of a driven equation. All formulas are in the amplitude and the detuning of `modulation`, the
-/// parameters and the definitions.
+/// What is known of the steady motions of a driven equation. All formulas are in the amplitude and
+/// the detuning of `modulation`, the parameters and the definitions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Response {
     /// x(t), an expression in t, the amplitude and the phase of `modulation`.
     pub motion: String,
-    /// The frequency-response equation: a polynomial that is zero at every steady motion; null where the phase cannot be eliminated.
+    /// The frequency-response equation: a polynomial that is zero at every steady motion; null
+    /// where the phase cannot be eliminated.
     pub relation: Option<Polynomial>,
     /// The relation solved for the detuning; null where it is not quadratic in that.
     pub branches: Option<Branches>,
     /// The largest amplitude of all detunings, an expression; null where it has no closed form.
     pub peak: Option<String>,
-    /// The squares of the amplitudes at which two branches meet, expressions in the detuning; none where they have no closed form.
+    /// The squares of the amplitudes at which two branches meet, expressions in the detuning; none
+    /// where they have no closed form.
     pub folds: Vec<String>,
-    /// The discriminant of the relation in the square of the amplitude, zero where two branches meet; null where it is not given.
+    /// The discriminant of the relation in the square of the amplitude, zero where two branches
+    /// meet; null where it is not given.
     pub jumps: Option<Polynomial>,
     /// The same where they are no polynomials; null where they are.
     #[serde(default)]
     pub closed: Option<ClosedRelation>,
-    /// The names of u = a cos(phase/m) and v = -a sin(phase/m), with m = times_linear; null where `rates` is.
+    /// The names of u = a cos(phase/m) and v = -a sin(phase/m), with m = times_linear; null where
+    /// `rates` is.
     pub coordinates: Option<[String; 2]>,
-    /// The rates of u and v, polynomials: the slow equations without a singular origin; null where they are no polynomials.
+    /// The rates of u and v, polynomials: the slow equations without a singular origin; null where
+    /// they are no polynomials.
     pub rates: Option<[Polynomial; 2]>,
-    /// The same by parts, each by its orders: what drains, what turns, and each wave of the phase; of each first what leads, then what
-    /// comes one, two, ... orders later. Left out where each part has one order alone.
+    /// The same by parts, each by its orders: what drains, what turns, and each wave of the phase;
+    /// of each first what leads, then what comes one, two, ... orders later. Left out where each
+    /// part has one order alone.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub parts: Vec<Vec<[Polynomial; 2]>>,
 }
 
-/// The frequency-response equation of a force that is no polynomial, expressions in the amplitude and the detuning.
+/// The frequency-response equation of a force that is no polynomial, expressions in the amplitude
+/// and the detuning.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -372,8 +405,8 @@ pub struct Transient {
     pub amplitude: String,
     /// The phase, an expression in t; null where it has no closed form.
     pub phase: Option<String>,
-    /// The time at which the amplitude reaches zero and stays, or grows without bound, an expression; null where the formulas hold
-    /// for all times.
+    /// The time at which the amplitude reaches zero and stays, or grows without bound, an
+    /// expression; null where the formulas hold for all times.
     pub ends: Option<String>,
 }
 
@@ -388,7 +421,10 @@ pub struct Transient {
 /// assert_eq!((document.schema.as_str(), document.order), ("lindstedt/solution/1", solution.order));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn solution(solution: &Solution, verification: Option<&verify::Verification>) -> SolutionDocument {
+pub fn solution(
+    solution: &Solution,
+    verification: Option<&verify::Verification>,
+) -> SolutionDocument {
     let _letters = solution.letters().in_force();
     let optional = |law: Option<&exact::Polynomial>| law.map(|law| Polynomial::of(law, solution));
     let definitions = solution.definitions.iter();
@@ -402,7 +438,12 @@ pub fn solution(solution: &Solution, verification: Option<&verify::Verification>
         amplitude: solution.amplitude.name().to_owned(),
         parameters: names(&solution.parameters),
         definitions: definitions
-            .map(|definition| (definition.symbol.to_string(), definition.meaning.to_string()))
+            .map(|definition| {
+                (
+                    definition.symbol.to_string(),
+                    definition.meaning.to_string(),
+                )
+            })
             .collect(),
         equilibrium: Constant::of(&solution.equilibrium),
         frequency: optional(solution.law.frequency()),
@@ -416,8 +457,14 @@ pub fn solution(solution: &Solution, verification: Option<&verify::Verification>
         }),
         displacement: displacement(&solution.displacement, solution),
         closed_motion: solution.closed_motion.as_ref().map(ToString::to_string),
-        limit_cycle: solution.limit_cycle.as_ref().map(|cycle| limit_cycle(cycle, solution)),
-        modulation: solution.modulation.as_ref().map(|slow| modulation(slow, solution)),
+        limit_cycle: solution
+            .limit_cycle
+            .as_ref()
+            .map(|cycle| limit_cycle(cycle, solution)),
+        modulation: solution
+            .modulation
+            .as_ref()
+            .map(|slow| modulation(slow, solution)),
         response: solution
             .response
             .as_ref()
@@ -432,11 +479,12 @@ pub fn solution(solution: &Solution, verification: Option<&verify::Verification>
 
 /// A motion, harmonic by harmonic.
 fn displacement(motion: &FourierSeries<Polynomials>, solution: &Solution) -> Displacement {
-    let harmonic = |(harmonic, cosine, sine): (usize, exact::Polynomial, exact::Polynomial)| Harmonic {
-        harmonic,
-        cos: Polynomial::of(&cosine, solution),
-        sin: Polynomial::of(&sine, solution),
-    };
+    let harmonic =
+        |(harmonic, cosine, sine): (usize, exact::Polynomial, exact::Polynomial)| Harmonic {
+            harmonic,
+            cos: Polynomial::of(&cosine, solution),
+            sin: Polynomial::of(&sine, solution),
+        };
     Displacement {
         variable: solution.phase().to_string(),
         harmonics: motion.harmonics().into_iter().map(harmonic).collect(),
@@ -488,7 +536,10 @@ fn modulation(modulation: &solution::Modulation, solution: &Solution) -> Modulat
             ends: transient.ends.as_ref().map(ToString::to_string),
         }),
         steady: modulation.steady.iter().map(cycle).collect(),
-        motion: modulation.motion.as_ref().map(|motion| displacement(motion, solution)),
+        motion: modulation
+            .motion
+            .as_ref()
+            .map(|motion| displacement(motion, solution)),
     }
 }
 
@@ -537,7 +588,8 @@ fn symbols(texts: &[String], names: &Names) -> Vec<Symbol> {
 }
 
 impl SolutionDocument {
-    /// The solution that the document describes; its `verification` and the derivation are left out.
+    /// The solution that the document describes; its `verification` and the derivation are left
+    /// out.
     ///
     /// # Errors
     /// A document of another kind; a name, a fraction or an expression that is none.
@@ -546,9 +598,13 @@ impl SolutionDocument {
         let method = Method::from_name(&self.method);
         let amplitude = AmplitudeConvention::from_name(&self.amplitude);
         let (Some(method), Some(amplitude)) = (method, amplitude) else {
-            return unexpected("method", "the name of a method, and `amplitude` that of a convention");
+            return unexpected(
+                "method",
+                "the name of a method, and `amplitude` that of a convention",
+            );
         };
-        let equation = parse_equation(&self.equation).or_else(|_| unexpected("equation", "an equation of motion"))?;
+        let equation = parse_equation(&self.equation)
+            .or_else(|_| unexpected("equation", "an equation of motion"))?;
         let time = Symbol::new("t");
         let own = self.parameters.iter().map(|name| Symbol::new(name));
         let driven = equation.left.contains(time) || equation.right.contains(time);
@@ -587,12 +643,28 @@ impl SolutionDocument {
                 Some(text) => Some(names.expression(text, "closed_motion")?),
                 None => None,
             },
-            limit_cycle: self.limit_cycle.as_ref().map(|own| own.read(names)).transpose()?,
-            modulation: self.modulation.as_ref().map(|own| own.read(names)).transpose()?,
-            response: self.response.as_ref().map(|own| own.read(names)).transpose()?,
+            limit_cycle: self
+                .limit_cycle
+                .as_ref()
+                .map(|own| own.read(names))
+                .transpose()?,
+            modulation: self
+                .modulation
+                .as_ref()
+                .map(|own| own.read(names))
+                .transpose()?,
+            response: self
+                .response
+                .as_ref()
+                .map(|own| own.read(names))
+                .transpose()?,
             numerical: self.numerical,
             validity: self.validity.iter().cloned().map(Note::Stated).collect(),
-            convergence: self.convergence.as_ref().map(|own| own.read(names)).transpose()?,
+            convergence: self
+                .convergence
+                .as_ref()
+                .map(|own| own.read(names))
+                .transpose()?,
             steps: vec![],
             derivation: vec![],
         })
@@ -600,7 +672,11 @@ impl SolutionDocument {
 
     /// The law, of whose kinds a document holds one.
     fn law(&self, names: &Names) -> Result<Law, JsonError> {
-        let optional = |law: &Option<Polynomial>, key| law.as_ref().map(|law| names.polynomial(law, key)).transpose();
+        let optional = |law: &Option<Polynomial>, key| {
+            law.as_ref()
+                .map(|law| names.polynomial(law, key))
+                .transpose()
+        };
         let frequency = optional(&self.frequency, "frequency")?;
         let squared = optional(&self.frequency_squared, "frequency_squared")?;
         let form = self
@@ -608,9 +684,19 @@ impl SolutionDocument {
             .as_deref()
             .map(|text| closed_form(text, names))
             .transpose()?;
-        let system = self.system.as_ref().map(|own| own.read(names)).transpose()?;
+        let system = self
+            .system
+            .as_ref()
+            .map(|own| own.read(names))
+            .transpose()?;
         Ok(
-            match (optional(&self.relation, "relation")?, squared, frequency, form, system) {
+            match (
+                optional(&self.relation, "relation")?,
+                squared,
+                frequency,
+                form,
+                system,
+            ) {
                 (Some(relation), squared, _, form, _) => Law::Relation {
                     relation,
                     root: squared.map(Root::Polynomial).or(form.map(Root::Closed)),
@@ -641,7 +727,10 @@ fn closed_form(text: &str, names: &Names) -> Result<ClosedForm, JsonError> {
 
 impl System {
     fn read(&self, names: &Names) -> Result<solution::System, JsonError> {
-        let equations = self.equations.iter().map(|text| names.expression(text, "equations"));
+        let equations = self
+            .equations
+            .iter()
+            .map(|text| names.expression(text, "equations"));
         Ok(solution::System {
             unknowns: symbols(&self.unknowns, names),
             equations: equations.collect::<Result<_, _>>()?,
@@ -678,8 +767,12 @@ impl Cycle {
 
 impl Response {
     fn read(&self, names: &Names) -> Result<solution::Response, JsonError> {
-        let polynomial =
-            |value: &Option<Polynomial>, key| value.as_ref().map(|value| names.polynomial(value, key)).transpose();
+        let polynomial = |value: &Option<Polynomial>, key| {
+            value
+                .as_ref()
+                .map(|value| names.polynomial(value, key))
+                .transpose()
+        };
         let branches = |branches: &Branches| -> Result<_, JsonError> {
             Ok(solution::response::Branches {
                 centre: names.polynomial(&branches.centre, "centre")?,
@@ -694,16 +787,23 @@ impl Response {
             })
         };
         let orders = |part: &[[Polynomial; 2]]| -> Result<Vec<_>, JsonError> {
-            let both = |[u, v]: &[Polynomial; 2]| Ok([names.polynomial(u, "parts")?, names.polynomial(v, "parts")?]);
+            let both = |[u, v]: &[Polynomial; 2]| {
+                Ok([names.polynomial(u, "parts")?, names.polynomial(v, "parts")?])
+            };
             part.iter().map(both).collect()
         };
-        let plane = |(coordinates, [u, v]): (&[String; 2], &[Polynomial; 2])| -> Result<_, JsonError> {
-            Ok(solution::response::Plane {
-                coordinates: coordinates.each_ref().map(|name| names.symbol(name)),
-                rates: [names.polynomial(u, "rates")?, names.polynomial(v, "rates")?],
-                parts: self.parts.iter().map(|part| orders(part)).collect::<Result<_, _>>()?,
-            })
-        };
+        let plane =
+            |(coordinates, [u, v]): (&[String; 2], &[Polynomial; 2])| -> Result<_, JsonError> {
+                Ok(solution::response::Plane {
+                    coordinates: coordinates.each_ref().map(|name| names.symbol(name)),
+                    rates: [names.polynomial(u, "rates")?, names.polynomial(v, "rates")?],
+                    parts: self
+                        .parts
+                        .iter()
+                        .map(|part| orders(part))
+                        .collect::<Result<_, _>>()?,
+                })
+            };
         Ok(solution::Response {
             motion: names.expression(&self.motion, "motion")?,
             relation: polynomial(&self.relation, "relation")?,
@@ -732,10 +832,15 @@ impl Response {
 
 impl Modulation {
     fn read(&self, names: &Names) -> Result<solution::Modulation, JsonError> {
-        let optional = |text: &Option<String>, key| text.as_deref().map(|text| names.expression(text, key)).transpose();
+        let optional = |text: &Option<String>, key| {
+            text.as_deref()
+                .map(|text| names.expression(text, key))
+                .transpose()
+        };
         let resonance = |resonance: &Resonance| -> Result<_, JsonError> {
             Ok(modulation::Resonance {
-                driving_frequency: names.expression(&resonance.driving_frequency, "driving_frequency")?,
+                driving_frequency: names
+                    .expression(&resonance.driving_frequency, "driving_frequency")?,
                 times_driving: resonance.times_driving,
                 times_linear: resonance.times_linear,
                 detuning: Definition {
@@ -772,7 +877,11 @@ impl Modulation {
                 .iter()
                 .map(|own| own.read(names))
                 .collect::<Result<_, JsonError>>()?,
-            motion: self.motion.as_ref().map(|own| own.read(names)).transpose()?,
+            motion: self
+                .motion
+                .as_ref()
+                .map(|own| own.read(names))
+                .transpose()?,
         })
     }
 }

@@ -9,7 +9,8 @@ use super::number::{Constant, Map, Polynomial, finite};
 use crate::expr::Expr;
 use crate::report::StabilityReport;
 
-/// The curves on which a linear equation with periodic coefficients changes between stable and unstable.
+/// The curves on which a linear equation with periodic coefficients changes between stable and
+/// unstable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -40,7 +41,10 @@ pub struct StabilityDocument {
 /// A transition curve: `curve + sign*sqrt(under_root)`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "TransitionCurve"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "TransitionCurve")
+)]
 pub struct CurveDocument {
     /// `a1`, `b1` for motions of cosines and of sines; `lower1`, `upper1` where they are of both.
     pub name: String,
@@ -74,13 +78,17 @@ pub struct StabilityVerification {
 /// A curve at the values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "JudgedCurve"))]
+#[cfg_attr(
+    feature = "schema",
+    schemars(deny_unknown_fields, rename = "JudgedCurve")
+)]
 pub struct JudgedCurveDocument {
     /// Its name.
     pub name: String,
     /// The unknown by the formula; null where it is not real.
     pub value: Option<f64>,
-    /// The unknown in truth, by Hill's determinant and Floquet's multipliers; null where the tongue does not reach so far.
+    /// The unknown in truth, by Hill's determinant and Floquet's multipliers; null where the tongue
+    /// does not reach so far.
     pub true_value: Option<f64>,
     /// `value/true_value - 1`; null where one of them is null.
     pub relative_error: Option<f64>,
@@ -124,7 +132,11 @@ pub fn stability(report: &StabilityReport) -> StabilityDocument {
             .map(|curve| CurveDocument {
                 name: curve.name.clone(),
                 tongue: curve.tongue,
-                multiplier: if curve.tongue.is_multiple_of(2) { 1 } else { -1 },
+                multiplier: if curve.tongue.is_multiple_of(2) {
+                    1
+                } else {
+                    -1
+                },
                 curve: polynomial(&curve.middle),
                 under_root: curve.under_root.as_ref().map(polynomial),
                 sign: match (&curve.under_root, curve.upper) {

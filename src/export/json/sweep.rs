@@ -11,8 +11,8 @@ use super::simulation::State;
 use crate::export::simulation::{SweepReport, columns};
 use crate::impact::sweep::{Spacing, Summary};
 
-/// Many runs of the paper's equation (7), over every combination of the values of some parameters; units as in a document of kind
-/// `simulation`.
+/// Many runs of the paper's equation (7), over every combination of the values of some parameters;
+/// units as in a document of kind `simulation`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -22,7 +22,8 @@ pub struct SweepDocument<Rows = Vec<Row>> {
     pub schema: String,
     /// The parameters that are varied; the last varies fastest.
     pub axes: Vec<Axis>,
-    /// What stands in a row: the parameters, in the order of the axes, then what came of the run, each with its unit and meaning.
+    /// What stands in a row: the parameters, in the order of the axes, then what came of the run,
+    /// each with its unit and meaning.
     pub columns: Vec<Column>,
     /// A row for each run.
     pub rows: Rows,
@@ -41,7 +42,8 @@ pub struct Axis {
     pub to: f64,
     /// The number of values.
     pub count: usize,
-    /// How the values follow each other: `linear` by equal steps, `logarithmic` by equal ratios, `list` as they were given.
+    /// How the values follow each other: `linear` by equal steps, `logarithmic` by equal ratios,
+    /// `list` as they were given.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = Spacing::ALL.map(Spacing::name))))]
     pub spacing: String,
     /// The values, in order.
@@ -67,8 +69,8 @@ impl From<&crate::impact::sweep::Axis> for Axis {
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Column {
-    /// Its name: that of a parameter, whose value stands in `values`, or the key of a row; `t`, `x` and `velocity` stand in
-    /// `final_state`.
+    /// Its name: that of a parameter, whose value stands in `values`, or the key of a row; `t`, `x`
+    /// and `velocity` stand in `final_state`.
     pub name: String,
     /// Its unit, as it is typed, 1 for a number without dimension; null for what is no number.
     pub unit: Option<String>,
@@ -85,15 +87,19 @@ pub struct Row {
     pub values: Vec<f64>,
     /// The number of contacts; null for a run that was stopped before it began.
     pub impacts: Option<usize>,
-    /// When the envelope of the amplitude falls to a tenth of the first swing, in units of time; null where it does not.
+    /// When the envelope of the amplitude falls to a tenth of the first swing, in units of time;
+    /// null where it does not.
     pub rest_time: Option<f64>,
-    /// The same without a barrier; null where it does not rest, and where the baseline was not asked for.
+    /// The same without a barrier; null where it does not rest, and where the baseline was not
+    /// asked for.
     pub rest_no_barrier: Option<f64>,
     /// The same with a barrier that loses nothing; null likewise.
     pub rest_lossless: Option<f64>,
-    /// The greatest depth in a barrier, in radians; 0 without contact, null for a run that was stopped before it began.
+    /// The greatest depth in a barrier, in radians; 0 without contact, null for a run that was
+    /// stopped before it began.
     pub penetration: Option<f64>,
-    /// The greatest speed at a touch, in radians per unit of time; 0 without contact, null likewise.
+    /// The greatest speed at a touch, in radians per unit of time; 0 without contact, null
+    /// likewise.
     pub speed_in: Option<f64>,
     /// The energy lost in contacts, in units of m g L; null likewise.
     pub energy_lost: Option<f64>,

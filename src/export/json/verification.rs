@@ -1,5 +1,5 @@
-//! What the judge says of a formula, inside the documents of kind `solution`: frequencies and errors at the values given, the steady or
-//! the followed motion, the range, the verdict.
+//! What the judge says of a formula, inside the documents of kind `solution`: frequencies and
+//! errors at the values given, the steady or the followed motion, the range, the verdict.
 
 #[cfg(feature = "schema")]
 use schemars::JsonSchema;
@@ -29,45 +29,55 @@ pub struct Verification {
     pub true_frequency: f64,
     /// frequency / true_frequency - 1, signed, as a fraction; null where there is no frequency.
     pub relative_error: Option<f64>,
-    /// What is judged: `omega^2`, of which the frequency is the root, or `omega`; of a driven motion the `amplitude` of the largest
-    /// stable steady state, whose relative error is given.
+    /// What is judged: `omega^2`, of which the frequency is the root, or `omega`; of a driven
+    /// motion the `amplitude` of the largest stable steady state, whose relative error is given.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = ["omega^2", "omega", "amplitude"])))]
     pub judged_on: String,
-    /// The relative error of `frequency` where `frequency_squared` is judged; null where they do not stand side by side.
+    /// The relative error of `frequency` where `frequency_squared` is judged; null where they do
+    /// not stand side by side.
     pub error_of_omega: Option<f64>,
-    /// The largest |x - x_true| over one true period in real time, as a fraction of the amplitude; null where it is not known.
+    /// The largest |x - x_true| over one true period in real time, as a fraction of the amplitude;
+    /// null where it is not known.
     pub max_deviation: Option<f64>,
-    /// Why the displacement is not judged, in words. Left out where it is, or where there is none to judge.
+    /// Why the displacement is not judged, in words. Left out where it is, or where there is none
+    /// to judge.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub no_deviation: Option<String>,
-    /// The root mean square of what the formula leaves of the equation, over that of the force; null where it is not known.
+    /// The root mean square of what the formula leaves of the equation, over that of the force;
+    /// null where it is not known.
     pub residual: Option<f64>,
-    /// The exponent with which the error of the frequency vanishes as the small parameter does; of a motion followed from its start
-    /// that of `max_deviation`, over times that grow as the small parameter becomes less, and of a steady driven motion that of
-    /// `max_deviation`. Null where rounding hides it.
+    /// The exponent with which the error of the frequency vanishes as the small parameter does; of
+    /// a motion followed from its start that of `max_deviation`, over times that grow as the small
+    /// parameter becomes less, and of a steady driven motion that of `max_deviation`. Null where
+    /// rounding hides it.
     pub slope: Option<f64>,
     /// Where the formula holds at these values, in words and numbers.
     pub ranges: Vec<Range>,
-    /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as they were solved for.
+    /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as
+    /// they were solved for.
     pub chosen: Map<f64>,
-    /// The value of every symbol of the formulas: parameters, amplitude (1 where the equation is linear and none was given),
-    /// definitions, what was chosen, `omega` and `pi`. Laws that are written for the size of the amplitude have its size here. A
-    /// symbol that has no real value is left out.
+    /// The value of every symbol of the formulas: parameters, amplitude (1 where the equation is
+    /// linear and none was given), definitions, what was chosen, `omega` and `pi`. Laws that are
+    /// written for the size of the amplitude have its size here. A symbol that has no real value is
+    /// left out.
     #[serde(default)]
     pub values: Map<f64>,
-    /// theta at t = 0, in radians: theta = omega t + phase. It is pi for a negative amplitude whose size stands in `values`, else 0.
+    /// theta at t = 0, in radians: theta = omega t + phase. It is pi for a negative amplitude whose
+    /// size stands in `values`, else 0.
     #[serde(default)]
     pub phase: f64,
-    /// The motion in numbers, whatever the method: x = sum of cos * cos(harmonic theta) + sin * sin(harmonic theta), the
-    /// equilibrium in harmonic 0; harmonics below 1e-14 of the largest are left out. Where phase is pi and the force is not odd,
-    /// only this starts at the amplitude, not `displacement`. Null where the frequency is not real or the motion is not known.
+    /// The motion in numbers, whatever the method: x = sum of cos * cos(harmonic theta) + sin *
+    /// sin(harmonic theta), the equilibrium in harmonic 0; harmonics below 1e-14 of the largest are
+    /// left out. Where phase is pi and the force is not odd, only this starts at the amplitude, not
+    /// `displacement`. Null where the frequency is not real or the motion is not known.
     #[serde(default)]
     pub motion: Option<Vec<HarmonicValue>>,
     /// The steady motions of a driven equation, largest first; empty for any other.
     #[serde(default)]
     pub steady_states: Vec<SteadyState>,
-    /// How many steady motions of the truncated slow equations have no true motion near by, at amplitudes at which the last order is
-    /// more than half of the one before it. Left out where there are none.
+    /// How many steady motions of the truncated slow equations have no true motion near by, at
+    /// amplitudes at which the last order is more than half of the one before it. Left out where
+    /// there are none.
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub spurious: usize,
     /// What else is known of a motion that is not periodic; null for any other.
@@ -78,8 +88,9 @@ pub struct Verification {
     pub verdict: String,
 }
 
-/// A motion that is not periodic, followed from its release at rest at x = A. Frequencies are those of its crossings of the
-/// equilibrium: pi over the mean time between successive ones; `max_deviation` is over the whole time.
+/// A motion that is not periodic, followed from its release at rest at x = A. Frequencies are those
+/// of its crossings of the equilibrium: pi over the mean time between successive ones;
+/// `max_deviation` is over the whole time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
@@ -90,15 +101,18 @@ pub struct Followed {
     pub reason: String,
     /// How many crossings of the formula and of the true motion were compared.
     pub crossings: usize,
-    /// The largest error of the turning points, as a fraction of the amplitude at the start; null where it is not known.
+    /// The largest error of the turning points, as a fraction of the amplitude at the start; null
+    /// where it is not known.
     pub amplitude_error: Option<f64>,
-    /// The exponent with which that error vanishes as the small parameter does, over times that grow as it becomes less; null where
-    /// rounding hides it.
+    /// The exponent with which that error vanishes as the small parameter does, over times that
+    /// grow as it becomes less; null where rounding hides it.
     #[serde(default)]
     pub amplitude_slope: Option<f64>,
-    /// When the amplitude is a tenth of that at the start, by the formula; null where it was not seen.
+    /// When the amplitude is a tenth of that at the start, by the formula; null where it was not
+    /// seen.
     pub tenth: Option<f64>,
-    /// The same by the action, which viscous damping drains at one rate whatever the force; null for any other damping.
+    /// The same by the action, which viscous damping drains at one rate whatever the force; null
+    /// for any other damping.
     pub tenth_by_action: Option<f64>,
     /// The same in truth, between turning points on the logarithm; null where it was not seen.
     pub true_tenth: Option<f64>,
@@ -123,7 +137,8 @@ pub struct SteadyState {
     pub true_stable: Option<bool>,
     /// amplitude / true_amplitude - 1, as a fraction; null for a motion without a part of its own.
     pub relative_error: Option<f64>,
-    /// The largest |x - x_true| over one period, as a fraction of the largest |x_true|; null where no true motion was found.
+    /// The largest |x - x_true| over one period, as a fraction of the largest |x_true|; null where
+    /// no true motion was found.
     pub max_deviation: Option<f64>,
 }
 
@@ -187,7 +202,11 @@ pub fn verification(verification: &verify::Verification) -> Verification {
         values: numbers(&verification.values),
         phase: verification.phase,
         motion: verification.motion.as_ref().and_then(motion),
-        steady_states: verification.steady_states.iter().map(steady_state).collect(),
+        steady_states: verification
+            .steady_states
+            .iter()
+            .map(steady_state)
+            .collect(),
         spurious: verification.spurious,
         followed: verification.followed.as_ref().map(|followed| Followed {
             until: followed.until,
@@ -208,7 +227,10 @@ fn steady_state(judged: &verify::JudgedState) -> SteadyState {
     SteadyState {
         amplitude: judged.state.amplitude,
         phase: judged.state.phase,
-        eigenvalues: judged.state.eigenvalues.map(|(real, imaginary)| [real, imaginary]),
+        eigenvalues: judged
+            .state
+            .eigenvalues
+            .map(|(real, imaginary)| [real, imaginary]),
         stable: judged.state.is_stable(),
         true_amplitude: finite(judged.true_amplitude),
         true_stable: judged.true_stable,
@@ -217,7 +239,8 @@ fn steady_state(judged: &verify::JudgedState) -> SteadyState {
     }
 }
 
-/// The harmonics of a motion in numbers but for rounding noise; nothing where one of them is not finite.
+/// The harmonics of a motion in numbers but for rounding noise; nothing where one of them is not
+/// finite.
 fn motion(motion: &FourierSeries<Doubles>) -> Option<Vec<HarmonicValue>> {
     let entry = |harmonic: usize| HarmonicValue {
         harmonic,
@@ -245,5 +268,7 @@ pub(super) fn values(values: &Values) -> Map<Constant> {
 /// Numbers by their names.
 pub(super) fn numbers(numbers: &[(Symbol, f64)]) -> Map<f64> {
     let numbers = numbers.iter();
-    numbers.map(|(name, value)| (name.to_string(), *value)).collect()
+    numbers
+        .map(|(name, value)| (name.to_string(), *value))
+        .collect()
 }

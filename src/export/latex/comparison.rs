@@ -31,7 +31,13 @@ pub(super) fn methods(rows: &[MethodRow], at: &Values) -> Table {
     let omega = format!("${}${place}", symbol(FREQUENCY));
     Table {
         places: "lrrrl".to_owned(),
-        head: table::head(&["method", &omega, "error in \\%", "deviation in \\%", "formula"]),
+        head: table::head(&[
+            "method",
+            &omega,
+            "error in \\%",
+            "deviation in \\%",
+            "formula",
+        ]),
         rows: rows.iter().map(row).collect(),
         framed: true,
     }
@@ -88,7 +94,9 @@ fn formula(method: &MethodRow) -> Result<String, &'static str> {
             rates.unwrap_or_default()
         }
         Shown::Squared(squared) => format!("{}^{{2}} = {}", symbol(FREQUENCY), ordered(squared)),
-        Shown::Closed(_) if method.row.solution.numerical => return Err("closed form, rounded coefficients"),
+        Shown::Closed(_) if method.row.solution.numerical => {
+            return Err("closed form, rounded coefficients");
+        }
         Shown::Closed(form) => {
             let omega = symbol(FREQUENCY);
             let name = if form.squared { omega + "^{2}" } else { omega };

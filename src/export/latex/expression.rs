@@ -96,7 +96,8 @@ fn difference(product: &Expr) -> Option<(usize, Expr)> {
     turned.find_map(|(place, turned)| Some((place, turned?)))
 }
 
-/// One term without its sign, as a fraction where there is a denominator; with its first difference turned round, if so asked.
+/// One term without its sign, as a fraction where there is a denominator; with its first difference
+/// turned round, if so asked.
 fn term(term: &Expr, turn: bool) -> Vec<Piece> {
     let (coefficient, factors) = term.factors();
     let (mut above, mut below) = (vec![], vec![]);
@@ -115,7 +116,10 @@ fn term(term: &Expr, turn: bool) -> Vec<Piece> {
     let decimal = decimal_of_long_fraction(&coefficient.abs());
     let (numerator, denominator) = match decimal {
         Some(decimal) => (super::scientific_text(&decimal), Integer::one()),
-        None => (coefficient.numer().abs().to_string(), coefficient.denom().clone()),
+        None => (
+            coefficient.numer().abs().to_string(),
+            coefficient.denom().clone(),
+        ),
     };
     let is_fraction = !denominator.is_one() || !below.is_empty();
     let above = match above.as_slice() {
@@ -123,7 +127,10 @@ fn term(term: &Expr, turn: bool) -> Vec<Piece> {
         [(base, exponent)] if is_fraction && numerator == "1" && exponent.is_one() => {
             vec![Piece::Expr(base.clone(), Place::Inside)]
         }
-        _ => row((numerator != "1" || above.is_empty()).then_some(numerator), &above),
+        _ => row(
+            (numerator != "1" || above.is_empty()).then_some(numerator),
+            &above,
+        ),
     };
     let below = match below.as_slice() {
         [] if denominator.is_one() => return above,
@@ -131,9 +138,18 @@ fn term(term: &Expr, turn: bool) -> Vec<Piece> {
         [(base, exponent)] if denominator.is_one() && exponent.is_one() => {
             vec![Piece::Expr(base.clone(), Place::Inside)]
         }
-        _ => row((!denominator.is_one()).then(|| denominator.to_string()), &below),
+        _ => row(
+            (!denominator.is_one()).then(|| denominator.to_string()),
+            &below,
+        ),
     };
-    let line = [vec![text("\\frac{")], above, vec![text("}{")], below, vec![text("}")]];
+    let line = [
+        vec![text("\\frac{")],
+        above,
+        vec![text("}{")],
+        below,
+        vec![text("}")],
+    ];
     line.into_iter().flatten().collect()
 }
 
@@ -156,15 +172,23 @@ fn power(base: &Expr, exponent: &Expr) -> Vec<Piece> {
     let exponent = match exponent.as_number() {
         Some(number) if number.is_one() => return vec![Piece::Expr(base.clone(), Place::Factor)],
         Some(number) if *number == half => {
-            return vec![text("\\sqrt{"), Piece::Expr(base.clone(), Place::Inside), text("}")];
+            return vec![
+                text("\\sqrt{"),
+                Piece::Expr(base.clone(), Place::Inside),
+                text("}"),
+            ];
         }
-        Some(number) if !number.is_integer() => text(format!("{}/{}", number.numer(), number.denom())),
+        Some(number) if !number.is_integer() => {
+            text(format!("{}/{}", number.numer(), number.denom()))
+        }
         _ => Piece::Expr(exponent.clone(), Place::Inside),
     };
-    // A function would carry its exponent, `\sin^{2} x`, a power has one already, and a derivative needs braces around its
-    // primes.
+    // A function would carry its exponent, `\sin^{2} x`, a power has one already, and a derivative
+    // needs braces around its primes.
     let mut power = match base.node() {
-        Node::Symbol(symbol) if symbol.primes() > 0 => vec![text(format!("{{{}}}", self::symbol(*symbol)))],
+        Node::Symbol(symbol) if symbol.primes() > 0 => {
+            vec![text(format!("{{{}}}", self::symbol(*symbol)))]
+        }
         Node::Function(..) | Node::Power(..) => in_parentheses(base),
         _ => vec![Piece::Expr(base.clone(), Place::Factor)],
     };
@@ -183,7 +207,9 @@ fn in_parentheses(expr: &Expr) -> Vec<Piece> {
 /// A factor that needs no sign between itself and its neighbours.
 fn factor(factor: &Expr) -> Vec<Piece> {
     match factor.node() {
-        Node::Number(number) if number.is_integer() && !number.is_negative() => vec![text(number.to_string())],
+        Node::Number(number) if number.is_integer() && !number.is_negative() => {
+            vec![text(number.to_string())]
+        }
         Node::Pi => vec![text("\\pi")],
         Node::Symbol(symbol) => vec![text(self::symbol(*symbol))],
         Node::Function(function, arguments) => call(*function, arguments),
@@ -236,9 +262,10 @@ fn call(function: Function, arguments: &[Expr]) -> Vec<Piece> {
     call
 }
 
-/// A name: Greek letters by name, digits and what follows an underscore as an index, primes as dots over the letter,
-/// underscores at the end as tildes. No two names look alike: where two spellings would meet, the index of the one with an
-/// underscore takes another shape, `k1` being `k_{1}` and `k_1` being `k_{\mathit{1}}`.
+/// A name: Greek letters by name, digits and what follows an underscore as an index, primes as dots
+/// over the letter, underscores at the end as tildes. No two names look alike: where two spellings
+/// would meet, the index of the one with an underscore takes another shape, `k1` being `k_{1}` and
+/// `k_1` being `k_{\mathit{1}}`.
 pub fn symbol(symbol: Symbol) -> String {
     let bare = symbol.coordinate().written();
     let name = bare.trim_end_matches('_');
@@ -285,7 +312,10 @@ mod tests {
     #[test]
     fn expressions_as_in_an_article() {
         for (text, expected) in [
-            ("1 - A^2/8 + 7*A^4/1536", r"1 - \frac{A^{2}}{8} + \frac{7 A^{4}}{1536}"),
+            (
+                "1 - A^2/8 + 7*A^4/1536",
+                r"1 - \frac{A^{2}}{8} + \frac{7 A^{4}}{1536}",
+            ),
             (
                 "x'' + 2*zeta*x' + sin(x)",
                 r"\ddot{x} + 2 \zeta \dot{x} + \sin\left(x\right)",
@@ -302,7 +332,10 @@ mod tests {
             ("-x/2", r"-\frac{x}{2}"),
             ("x'^2*abs(x)", r"{\dot{x}}^{2} \left|x\right|"),
             ("mass1*x", r"\mathrm{mass}_{1} x"),
-            ("exp(-x)/(1 + x^2)", r"\frac{\exp\left(-x\right)}{1 + x^{2}}"),
+            (
+                "exp(-x)/(1 + x^2)",
+                r"\frac{\exp\left(-x\right)}{1 + x^{2}}",
+            ),
             ("-2*y*(1 + x)/3", r"-\frac{2 y \left(1 + x\right)}{3}"),
             ("(x^2)^(3/2)", r"\left(x^{2}\right)^{3/2}"),
             ("1/(1 + sin(x))", r"\frac{1}{1 + \sin\left(x\right)}"),
@@ -329,8 +362,8 @@ mod tests {
         assert_eq!(expression(&nested).matches("1 + ").count(), 100_000);
     }
 
-    /// Every name of up to four signs over an alphabet of letters, digits and underscores, and those with a meaning of
-    /// their own: as many spellings as names.
+    /// Every name of up to four signs over an alphabet of letters, digits and underscores, and
+    /// those with a meaning of their own: as many spellings as names.
     #[test]
     fn no_two_names_are_spelt_alike() {
         let stems = [

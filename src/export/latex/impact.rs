@@ -18,7 +18,13 @@ pub(super) fn reading(reading: Reading) -> String {
 }
 
 /// The line in place of the force of the barrier, and how it was fitted.
-pub(super) fn fitted(fitted: &FittedLine, barrier: f64, rule: Rule, letters: Letters, per_stiffness: bool) -> String {
+pub(super) fn fitted(
+    fitted: &FittedLine,
+    barrier: f64,
+    rule: Rule,
+    letters: Letters,
+    per_stiffness: bool,
+) -> String {
     let line = format!(
         "{}\\,{} {}",
         scientific(fitted.line.slope),
@@ -123,7 +129,9 @@ pub(super) fn methods(rows: &[ImpactRow], truth: [f64; 5]) -> Table {
         false => format!("${}$", scientific_text(&significant(100.0 * value, 3))),
     };
     let known = truth.map(number).into_iter().chain(vec![String::new(); 3]);
-    let known = std::iter::once("Runge--Kutta".to_owned()).chain(known).collect();
+    let known = std::iter::once("Runge--Kutta".to_owned())
+        .chain(known)
+        .collect();
     let row = |row: &ImpactRow| {
         let cells = row.errors.iter().chain(&row.deviations);
         let cells = cells.map(|value| percent(*value));
@@ -145,7 +153,11 @@ pub(super) fn methods(rows: &[ImpactRow], truth: [f64; 5]) -> Table {
 }
 
 fn signed(value: f64) -> String {
-    format!("{} {}", if value < 0.0 { '-' } else { '+' }, scientific(value.abs()))
+    format!(
+        "{} {}",
+        if value < 0.0 { '-' } else { '+' },
+        scientific(value.abs())
+    )
 }
 
 /// The name of a phase and when it is, and its closed form: a few waves to a row.
@@ -196,8 +208,14 @@ pub(super) fn phase(phase: &Phase, letters: Letters) -> Vec<String> {
                 waves.push(match term {
                     Term::Constant => scientific_text(&significant(value, 9)),
                     Term::Parabola => format!("{size}\\,{clock}(t_{{2}} - t)"),
-                    Term::Wave { function, frequency } => {
-                        format!("{size} \\{function}\\left({}\\,{clock}\\right)", scientific(frequency))
+                    Term::Wave {
+                        function,
+                        frequency,
+                    } => {
+                        format!(
+                            "{size} \\{function}\\left({}\\,{clock}\\right)",
+                            scientific(frequency)
+                        )
                     }
                 });
             }
@@ -206,10 +224,15 @@ pub(super) fn phase(phase: &Phase, letters: Letters) -> Vec<String> {
     let (from, to) = match phase.name {
         "approach" => ("0", format!("t_{{1}} = {}", scientific(phase.end))),
         "contact" => ("t_{1}", format!("t_{{2}} = {}", scientific(phase.end))),
-        _ if phase.joined_at() == Some(3) => ("t_{2}", format!("t_{{3}} = {}", scientific(phase.end))),
+        _ if phase.joined_at() == Some(3) => {
+            ("t_{2}", format!("t_{{3}} = {}", scientific(phase.end)))
+        }
         _ => ("t_{2}", scientific(phase.end)),
     };
-    let mut rows = vec![format!("&\\text{{{},}} \\quad {from} \\le t \\le {to}", phase.name)];
+    let mut rows = vec![format!(
+        "&\\text{{{},}} \\quad {from} \\le t \\le {to}",
+        phase.name
+    )];
     for (index, waves) in waves.chunks(WAVES_IN_A_ROW).enumerate() {
         let left = match index {
             0 => format!("{}(t) &= ", symbol(letters.coordinate)),

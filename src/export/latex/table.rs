@@ -32,7 +32,9 @@ impl Table {
         let frame = if self.framed { "\\hline\n" } else { "" };
         let (places, head) = (&self.places, line(&self.head));
         let rows: String = self.rows.iter().map(line).collect();
-        format!("\\begin{{tabular}}{{{places}}}\n{frame}{head}\\hline\n{rows}{frame}\\end{{tabular}}\n")
+        format!(
+            "\\begin{{tabular}}{{{places}}}\n{frame}{head}\\hline\n{rows}{frame}\\end{{tabular}}\n"
+        )
     }
 }
 
@@ -53,8 +55,14 @@ pub(super) fn table(head: &[Heading], rows: &[Vec<String>]) -> Table {
     }
     Table {
         places,
-        head: head.iter().map(|heading| heading.latex.to_owned()).collect(),
-        rows: rows.iter().map(|row| row.iter().map(cell).collect()).collect(),
+        head: head
+            .iter()
+            .map(|heading| heading.latex.to_owned())
+            .collect(),
+        rows: rows
+            .iter()
+            .map(|row| row.iter().map(cell).collect())
+            .collect(),
         framed: false,
     }
 }

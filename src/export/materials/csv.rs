@@ -25,7 +25,8 @@ const COLUMNS: [(&str, &str); 17] = [
     ("energies", "m*g*L"),
 ];
 
-/// The table: what has no value is empty, the energies after the impacts stand in one field, between semicolons.
+/// The table: what has no value is empty, the energies after the impacts stand in one field,
+/// between semicolons.
 ///
 /// ```
 /// use lindstedt::impact::{MaterialQuestion, study_materials};
@@ -50,7 +51,9 @@ pub fn materials(study: &MaterialStudy) -> String {
                 first.restitution,
             ]
         });
-        let first: Vec<String> = (0..6).map(|place| optional(first.map(|first| first[place]))).collect();
+        let first: Vec<String> = (0..6)
+            .map(|place| optional(first.map(|first| first[place])))
+            .collect();
         let rest = row.course.rest_time.ok();
         let energies: Vec<String> = row.course.energies.iter().map(f64::to_string).collect();
         let _ = writeln!(

@@ -1,13 +1,17 @@
-//! The paper's Figure 4 with its answer: the swing against every barrier, and its decay under two things held fixed.
+//! The paper's Figure 4 with its answer: the swing against every barrier, and its decay under two
+//! things held fixed.
 
 use super::super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, Scale, figure};
 use crate::decimal::{decimal, significant};
-use crate::impact::{ContactDamping, HeldFixed, MaterialStudy, MaterialsError, Parameter, REST_FRACTION, Simulation};
+use crate::impact::{
+    ContactDamping, HeldFixed, MaterialStudy, MaterialsError, Parameter, REST_FRACTION, Simulation,
+};
 
 /// Points of a motion, equally spaced in time.
 const POINTS: usize = 1200;
 
-/// The curves of the materials, as many as can be told apart: the first are drawn. Black is what stands beside them.
+/// The curves of the materials, as many as can be told apart: the first are drawn. Black is what
+/// stands beside them.
 const STYLES: [CurveStyle; 8] = [
     CurveStyle::SERIES[0],
     CurveStyle::SERIES[1],
@@ -37,9 +41,10 @@ pub enum MaterialsFigureError {
 /// Points of one curve.
 type Points = Vec<(f64, f64)>;
 
-/// The swing against every barrier from 1 to 2.5 s, as in the paper's Figure 4, and the decay of its amplitude: as asked for, and
-/// beside it with the contact damping held fixed in the form under which the modulus says the opposite. With the decay stand those
-/// without a barrier and with one that loses nothing.
+/// The swing against every barrier from 1 to 2.5 s, as in the paper's Figure 4, and the decay of
+/// its amplitude: as asked for, and beside it with the contact damping held fixed in the form under
+/// which the modulus says the opposite. With the decay stand those without a barrier and with one
+/// that loses nothing.
 ///
 /// # Errors
 /// As [`figure`]; a motion that cannot be followed.
@@ -75,7 +80,11 @@ pub fn materials(study: &MaterialStudy) -> Result<String, MaterialsFigureError> 
     }
     let [softest, _] = study.softest_and_hardest();
     let beside = [
-        ("no barrier", study.motion_without(None, end)?, CurveStyle::SERIES[4]),
+        (
+            "no barrier",
+            study.motion_without(None, end)?,
+            CurveStyle::SERIES[4],
+        ),
         (
             "barrier without loss",
             study.motion_without(Some(softest), end)?,
@@ -97,31 +106,40 @@ pub fn materials(study: &MaterialStudy) -> Result<String, MaterialsFigureError> 
         .iter()
         .map(|held| ["Swing", "Decay"].map(|what| title(what, held)))
         .collect();
-    let barriers: Vec<f64> = [study.model.left, study.model.right].into_iter().flatten().collect();
-    let swings = motions.iter().zip(&titles).map(|([swings, _], [title, _])| Panel {
-        title,
-        x_label: "time t (s)",
-        y_label: "displacement x (rad)",
-        curves: of_materials(study, swings),
-        guides: barriers
-            .iter()
-            .map(|barrier| Guide::Y(*barrier, "barrier x_c"))
-            .collect(),
-        ..Panel::default()
-    });
-    let decays = motions.iter().zip(&titles).map(|([_, decays], [_, title])| {
-        let beside = beside.iter().filter(|(_, points, _)| points.len() > 1);
-        let beside = beside.map(|(label, points, style)| curve(label, points, *style));
-        Panel {
+    let barriers: Vec<f64> = [study.model.left, study.model.right]
+        .into_iter()
+        .flatten()
+        .collect();
+    let swings = motions
+        .iter()
+        .zip(&titles)
+        .map(|([swings, _], [title, _])| Panel {
             title,
             x_label: "time t (s)",
-            y_label: "amplitude (% of the first swing)",
-            y_scale: Scale::Logarithmic,
-            curves: beside.chain(of_materials(study, decays)).collect(),
-            guides: vec![Guide::Y(100.0 * REST_FRACTION, "rest, 10 %")],
+            y_label: "displacement x (rad)",
+            curves: of_materials(study, swings),
+            guides: barriers
+                .iter()
+                .map(|barrier| Guide::Y(*barrier, "barrier x_c"))
+                .collect(),
             ..Panel::default()
-        }
-    });
+        });
+    let decays = motions
+        .iter()
+        .zip(&titles)
+        .map(|([_, decays], [_, title])| {
+            let beside = beside.iter().filter(|(_, points, _)| points.len() > 1);
+            let beside = beside.map(|(label, points, style)| curve(label, points, *style));
+            Panel {
+                title,
+                x_label: "time t (s)",
+                y_label: "amplitude (% of the first swing)",
+                y_scale: Scale::Logarithmic,
+                curves: beside.chain(of_materials(study, decays)).collect(),
+                guides: vec![Guide::Y(100.0 * REST_FRACTION, "rest, 10 %")],
+                ..Panel::default()
+            }
+        });
     let panels: Vec<Panel> = swings.chain(decays).collect();
     Ok(figure(&panels, &caption(study, contrast, drawn))?)
 }
@@ -129,17 +147,26 @@ pub fn materials(study: &MaterialStudy) -> Result<String, MaterialsFigureError> 
 /// When the last of them rests; the end of the run where one does not.
 fn last_rest(study: &MaterialStudy) -> f64 {
     let of_rows = study.rows.iter().map(|row| row.course.rest_time);
-    let of_held = study.held_fixed.iter().flat_map(|held| held.rest_times.iter().copied());
+    let of_held = study
+        .held_fixed
+        .iter()
+        .flat_map(|held| held.rest_times.iter().copied());
     let all: Result<Vec<f64>, _> = of_rows.chain(of_held).chain([study.no_barrier]).collect();
     let longest = all.map(|times| times.into_iter().fold(0.0, f64::max));
     longest.unwrap_or(study.question.settings.duration)
 }
 
-/// Of the forms that are not as good as the given one the first: mu beside lambda, lambda beside mu.
+/// Of the forms that are not as good as the given one the first: mu beside lambda, lambda beside
+/// mu.
 fn contrast(study: &MaterialStudy) -> Option<&HeldFixed> {
-    let by_mu = |damping: ContactDamping| matches!(damping.form(), Parameter::Mu | Parameter::ContactDamping);
+    let by_mu = |damping: ContactDamping| {
+        matches!(damping.form(), Parameter::Mu | Parameter::ContactDamping)
+    };
     let given = by_mu(study.dissipation.contact);
-    study.held_fixed.iter().find(|held| by_mu(held.damping) != given)
+    study
+        .held_fixed
+        .iter()
+        .find(|held| by_mu(held.damping) != given)
 }
 
 /// A curve for each material; one point alone is none.
@@ -151,16 +178,23 @@ fn of_materials<'a>(study: &'a MaterialStudy, points: &'a [Points]) -> Vec<Curve
 }
 
 fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
-    Curve { label, points, style }
+    Curve {
+        label,
+        points,
+        style,
+    }
 }
 
 /// The displacement in this window of time, the time in seconds.
 fn swing(motion: &Simulation, [from, to]: [f64; 2], second: f64) -> Points {
     let times = (0..=POINTS).map(|index| from + (to - from) * (index as f64 / POINTS as f64));
-    times.filter_map(|t| Some((t * second, motion.path.at(t)?.0))).collect()
+    times
+        .filter_map(|t| Some((t * second, motion.path.at(t)?.0)))
+        .collect()
 }
 
-/// The amplitude at the turning points of the envelope, in percent of the first, the time in seconds.
+/// The amplitude at the turning points of the envelope, in percent of the first, the time in
+/// seconds.
 fn decay(motion: &Simulation, second: f64) -> Points {
     let envelope = motion.envelope();
     let first = envelope.first().map_or(1.0, |turn| turn.x.abs());
@@ -198,12 +232,18 @@ fn caption(study: &MaterialStudy, contrast: Option<&HeldFixed>, drawn: usize) ->
         held.spread()
             .map(|spread| format!("{} %", significant(100.0 * spread, 3)))
     };
-    if let (Some(first), Some(second)) = (study.held_fixed.first().and_then(spread), contrast.and_then(spread)) {
+    if let (Some(first), Some(second)) = (
+        study.held_fixed.first().and_then(spread),
+        contrast.and_then(spread),
+    ) {
         text += &format!(": rest times {first} apart, or {second}");
     }
     text += ".";
     if drawn < study.rows.len() {
-        text += &format!(" The first {drawn} of {} materials are drawn.", study.rows.len());
+        text += &format!(
+            " The first {drawn} of {} materials are drawn.",
+            study.rows.len()
+        );
     }
     text
 }

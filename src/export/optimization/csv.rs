@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use crate::optimize::{Finalist, Objective, Question, SearchRun, Study};
 
-/// The table: for one objective the best design of every run as it has it, for several the front by integration. A first line of comment
-/// has the units; what has no value is empty.
+/// The table: for one objective the best design of every run as it has it, for several the front by
+/// integration. A first line of comment has the units; what has no value is empty.
 ///
 /// ```
 /// use lindstedt::optimize::{Question, Watch, optimize};
@@ -21,10 +21,22 @@ pub fn optimization(study: &Study) -> String {
         let fields: Vec<&str> = columns.iter().map(|column| of(column).as_str()).collect();
         fields.join(",")
     };
-    let mut text = format!("# {}\n{}\n", joined(|column| &column.1), joined(|column| &column.0));
+    let mut text = format!(
+        "# {}\n{}\n",
+        joined(|column| &column.1),
+        joined(|column| &column.0)
+    );
     let rows: Vec<Vec<String>> = match question.objectives.len() {
-        1 => study.runs.iter().map(|run| best_of(run, question)).collect(),
-        _ => study.finalists.iter().map(|one| compromise(one, question)).collect(),
+        1 => study
+            .runs
+            .iter()
+            .map(|run| best_of(run, question))
+            .collect(),
+        _ => study
+            .finalists
+            .iter()
+            .map(|one| compromise(one, question))
+            .collect(),
     };
     for row in rows {
         let _ = writeln!(text, "{}", row.join(","));
@@ -60,8 +72,14 @@ fn columns(question: &Question) -> Vec<(String, String)> {
 
 /// The variables that have a column of their own: the mass may be an objective, which has one.
 fn own_variables(question: &Question) -> impl Iterator<Item = usize> {
-    let is_objective = |name: &str| question.objectives.iter().any(|objective| objective.name() == name);
-    (0..question.variables.len()).filter(move |&index| !is_objective(question.variables[index].parameter.name()))
+    let is_objective = |name: &str| {
+        question
+            .objectives
+            .iter()
+            .any(|objective| objective.name() == name)
+    };
+    (0..question.variables.len())
+        .filter(move |&index| !is_objective(question.variables[index].parameter.name()))
 }
 
 /// What is known of a design beside what was made small, and what varies.
@@ -80,8 +98,12 @@ fn others(question: &Question) -> impl Iterator<Item = Objective> {
 /// The best design of a run for one objective, and how the run went.
 fn best_of(run: &SearchRun, question: &Question) -> Vec<String> {
     let found = run.found.first();
-    let mut fields = vec![run.number.to_string(), number(found.map(|found| found.values[0]))];
-    fields.extend(own_variables(question).map(|index| number(found.map(|found| found.point[index]))));
+    let mut fields = vec![
+        run.number.to_string(),
+        number(found.map(|found| found.values[0])),
+    ];
+    fields
+        .extend(own_variables(question).map(|index| number(found.map(|found| found.point[index]))));
     if !question.materials.is_empty() {
         let material = found.and_then(|found| question.case_of(&found.point).1);
         fields.push(name_of(material, question));

@@ -1,4 +1,5 @@
-//! How the runs of a search come down, where in the box the good designs lie, and the front of several objectives.
+//! How the runs of a search come down, where in the box the good designs lie, and the front of
+//! several objectives.
 
 use super::super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, Scale, figure};
 use crate::decimal::{decimal, significant};
@@ -10,8 +11,9 @@ type Points = Vec<(f64, f64)>;
 /// The most runs that are drawn.
 const DRAWN: usize = 200;
 
-/// For one objective the convergence of all runs beside the searches it is measured by, and the designs within 1 % of the best in the box, with the best
-/// of the runs and the paper's Table 5; for several the front, the first objective against each other one.
+/// For one objective the convergence of all runs beside the searches it is measured by, and the
+/// designs within 1 % of the best in the box, with the best of the runs and the paper's Table 5;
+/// for several the front, the first objective against each other one.
 ///
 /// # Errors
 /// As [`figure`].
@@ -88,7 +90,12 @@ impl Convergence {
         let population = study.question.genetic.population as f64;
         let (crossed, mutated) = study.question.genetic.children();
         let born = (crossed + mutated) as f64;
-        let finite = |points: Points| -> Points { points.into_iter().filter(|(_, value)| value.is_finite()).collect() };
+        let finite = |points: Points| -> Points {
+            points
+                .into_iter()
+                .filter(|(_, value)| value.is_finite())
+                .collect()
+        };
         let after = |curve: &[f64]| -> Points {
             let place = |(index, value): (usize, &f64)| (population + born * index as f64, *value);
             finite(curve.iter().enumerate().map(place).collect())
@@ -115,7 +122,11 @@ impl Convergence {
         let drawn = rivals.filter(|((_, points), _)| points.len() > 1);
         curves.extend(drawn.map(|((rival, points), style)| curve(rival.name, points, style)));
         if self.median.len() > 1 {
-            curves.push(curve("genetic algorithm, median", &self.median, CurveStyle::SERIES[0]));
+            curves.push(curve(
+                "genetic algorithm, median",
+                &self.median,
+                CurveStyle::SERIES[0],
+            ));
         }
         curves
     }
@@ -148,10 +159,20 @@ impl Designs {
             [
                 near.take(1500).map(|point| at(point)).collect(),
                 best.map(|found| at(&found.point)).collect(),
-                study.default_design.iter().map(|papers| at(&papers.point)).collect(),
+                study
+                    .default_design
+                    .iter()
+                    .map(|papers| at(&papers.point))
+                    .collect(),
             ]
         };
-        let label = |variable: &Variable| format!("{} ({})", variable.parameter.name(), variable.parameter.unit());
+        let label = |variable: &Variable| {
+            format!(
+                "{} ({})",
+                variable.parameter.name(),
+                variable.parameter.unit()
+            )
+        };
         Self {
             points: pairs.iter().map(points).collect(),
             pairs,
@@ -193,7 +214,11 @@ impl Designs {
                     .collect(),
             })
         };
-        self.pairs.iter().zip(&self.points).filter_map(panel).collect()
+        self.pairs
+            .iter()
+            .zip(&self.points)
+            .filter_map(panel)
+            .collect()
     }
 }
 
@@ -208,15 +233,21 @@ fn front(study: &Study) -> Result<String, FigureError> {
                 .finalists
                 .iter()
                 .map(|finalist| (value(&finalist.values, 0), value(&finalist.values, *index)));
-            pairs.filter(|(x, y)| x.is_finite() && y.is_finite()).collect()
+            pairs
+                .filter(|(x, y)| x.is_finite() && y.is_finite())
+                .collect()
         })
         .collect();
     let papers: Vec<Points> = others
         .iter()
         .map(|index| {
             let papers = study.default_design.as_ref();
-            let pair =
-                papers.and_then(|papers| Some((objectives[0].value(papers)?, objectives[*index].value(papers)?)));
+            let pair = papers.and_then(|papers| {
+                Some((
+                    objectives[0].value(papers)?,
+                    objectives[*index].value(papers)?,
+                ))
+            });
             pair.into_iter().collect()
         })
         .collect();
@@ -252,7 +283,10 @@ fn front(study: &Study) -> Result<String, FigureError> {
             guides: vec![],
         });
     }
-    let names: Vec<&str> = objectives.iter().map(|objective| objective.meaning()).collect();
+    let names: Vec<&str> = objectives
+        .iter()
+        .map(|objective| objective.meaning())
+        .collect();
     let caption = format!(
         "{} designs none of which is better than another in everything: {}. {} runs of NSGA-II, seed {}.",
         study.finalists.len(),
@@ -264,5 +298,9 @@ fn front(study: &Study) -> Result<String, FigureError> {
 }
 
 fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
-    Curve { label, points, style }
+    Curve {
+        label,
+        points,
+        style,
+    }
 }

@@ -1,5 +1,5 @@
-//! A search for the best damper as a table of comma-separated values and as pictures; as text and LaTeX it is a document of
-//! [`report`](crate::report), in JSON one of `export::json`.
+//! A search for the best damper as a table of comma-separated values and as pictures; as text and
+//! LaTeX it is a document of [`report`](crate::report), in JSON one of `export::json`.
 
 mod csv;
 #[cfg(feature = "plot")]

@@ -1,4 +1,5 @@
-//! What a chain of closed forms says beyond a simulation: its formulas, and how far each contact is from the integrated one.
+//! What a chain of closed forms says beyond a simulation: its formulas, and how far each contact is
+//! from the integrated one.
 
 use std::fmt::Write as _;
 
@@ -24,9 +25,18 @@ pub(super) fn impacts(text: &mut String, motion: &Simulation, judge: &Simulation
         "", "side", "entry", "duration", "speed in", "speed out", "penetration", "restitution"
     );
     let optional = |value: Option<f64>| value.map_or("-".to_owned(), decimal);
-    for (index, (impact, error)) in motion.impacts.iter().zip(motion.contact_deviations(judge)).enumerate() {
+    for (index, (impact, error)) in motion
+        .impacts
+        .iter()
+        .zip(motion.contact_deviations(judge))
+        .enumerate()
+    {
         if index == LISTED && index + 1 < count {
-            let _ = writeln!(text, "   ... {} more, all of them in --format json", count - index);
+            let _ = writeln!(
+                text,
+                "   ... {} more, all of them in --format json",
+                count - index
+            );
             break;
         }
         let _ = writeln!(
@@ -64,7 +74,8 @@ pub(super) fn impacts(text: &mut String, motion: &Simulation, judge: &Simulation
     }
 }
 
-/// The phases of a chain: steps of an integration that follow each other are one, which has no formula.
+/// The phases of a chain: steps of an integration that follow each other are one, which has no
+/// formula.
 pub(in crate::export) fn phases(motion: &Simulation) -> Vec<Piece> {
     let integrated = |piece: &Piece| piece.closed_form().is_none() && piece.regime != Regime::Stuck;
     let mut phases: Vec<Piece> = Vec::new();

@@ -58,7 +58,8 @@ const BASELINE: [(&str, Option<&str>, &str); 2] = [
     ),
 ];
 
-/// The columns: the parameters in the order of the axes, then what came of each motion, with the rest times of the baseline or without.
+/// The columns: the parameters in the order of the axes, then what came of each motion, with the
+/// rest times of the baseline or without.
 ///
 /// ```
 /// use lindstedt::export::simulation::columns;
@@ -71,7 +72,9 @@ const BASELINE: [(&str, Option<&str>, &str); 2] = [
 pub fn columns(axes: &[Axis], baseline: bool) -> Vec<Column> {
     let swept = axes.iter().map(|axis| {
         let parameter = axis.name().parse::<Parameter>().ok();
-        let unit = parameter.map(Parameter::unit).filter(|unit| !unit.is_empty());
+        let unit = parameter
+            .map(Parameter::unit)
+            .filter(|unit| !unit.is_empty());
         Column {
             name: axis.name().to_owned(),
             unit: unit.or(Some("1")),

@@ -10,8 +10,8 @@ use crate::impact::NoRest;
 /// Points inside each step of the integrator.
 const BETWEEN: usize = 3;
 
-/// The trajectory: the steps of the integrator and a few points inside each, so that a contact of a millisecond is as
-/// well drawn as a swing; where samples are asked for, the state at these alone.
+/// The trajectory: the steps of the integrator and a few points inside each, so that a contact of a
+/// millisecond is as well drawn as a swing; where samples are asked for, the state at these alone.
 ///
 /// ```
 /// use lindstedt::export::simulation::{Report, csv};
@@ -28,7 +28,10 @@ pub fn simulation(report: &Report) -> String {
     let motion = report.motion;
     let mut text = String::from("t,x,velocity,state,energy\n");
     let mut line = |t: f64, x: f64, velocity: f64| {
-        let state = motion.path.regime_at(t).map_or("free", |state| state.name());
+        let state = motion
+            .path
+            .regime_at(t)
+            .map_or("free", |state| state.name());
         let energy = motion.model.energy(x, velocity);
         let _ = writeln!(text, "{t},{x},{velocity},{state},{energy}");
     };
@@ -54,8 +57,9 @@ pub fn simulation(report: &Report) -> String {
     text
 }
 
-/// The sweep: the parameters, then what came of them; a line at a time, for there may be a million. The first line has the
-/// units and begins with `#`, as a comment that readers of tables can be told to skip; the second has the names.
+/// The sweep: the parameters, then what came of them; a line at a time, for there may be a million.
+/// The first line has the units and begins with `#`, as a comment that readers of tables can be
+/// told to skip; the second has the names.
 ///
 /// # Errors
 /// What the writer says.
@@ -86,7 +90,8 @@ pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
         for value in report.values(row) {
             write!(to, "{value},")?;
         }
-        let written = |time: Result<f64, NoRest>| time.map_or(String::new(), |time| time.to_string());
+        let written =
+            |time: Result<f64, NoRest>| time.map_or(String::new(), |time| time.to_string());
         let mut rest = written(summary.rest_time);
         if let Some([without, lossless]) = summary.baseline {
             rest = format!("{rest},{},{}", written(without), written(lossless));

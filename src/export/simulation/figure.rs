@@ -5,7 +5,9 @@ use std::sync::Arc;
 use kuva::prelude::{ColorMap, Heatmap, Layout, Plot, TickFormat};
 use kuva::render::render::{Primitive, TextAnchor, render_multiple};
 
-use super::super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, Scale, figure, power_of_ten, written};
+use super::super::figure::{
+    Curve, CurveStyle, FigureError, Guide, Panel, Scale, figure, power_of_ten, written,
+};
 use super::{Report, SweepReport};
 use crate::decimal::{decimal, significant};
 use crate::impact::sweep::{Axis, Spacing, Summary};
@@ -70,7 +72,10 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
     let curves = |of: fn(&Drawn) -> &Points| {
         let judge = judge.as_ref();
         let judge = judge.map(|judge| curve(judge.name, of(judge), CurveStyle::RUNGE_KUTTA));
-        judge.into_iter().chain([curve(own.name, of(&own), style)]).collect()
+        judge
+            .into_iter()
+            .chain([curve(own.name, of(&own), style)])
+            .collect()
     };
     let guides = |guide: fn(f64, &'static str) -> Guide<'static>| -> Vec<Guide<'static>> {
         let left = model.left.map(|at| guide(at, "left barrier"));
@@ -82,7 +87,9 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
         }
     };
     let works = works(motion);
-    let energies = works.iter().map(|(label, points, style)| curve(label, points, *style));
+    let energies = works
+        .iter()
+        .map(|(label, points, style)| curve(label, points, *style));
     let panel = |title, x_label, y_label, curves, guides| Panel {
         title,
         x_label,
@@ -142,7 +149,10 @@ impl Drawn {
         Self {
             name,
             time: points.iter().map(|&(t, x, _)| (t, x)).collect(),
-            phase: points.iter().map(|&(_, x, velocity)| (x, velocity)).collect(),
+            phase: points
+                .iter()
+                .map(|&(_, x, velocity)| (x, velocity))
+                .collect(),
         }
     }
 }
@@ -187,13 +197,19 @@ fn works(motion: &Simulation) -> Vec<(&'static str, Points, CurveStyle)> {
         ),
     ];
     let acting = all.into_iter().filter(|(acts, ..)| *acts);
-    acting.map(|(_, label, points, style)| (label, points, style)).collect()
+    acting
+        .map(|(_, label, points, style)| (label, points, style))
+        .collect()
 }
 
 const TIME: &str = "time t (units of 1/ω)";
 
 fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
-    Curve { label, points, style }
+    Curve {
+        label,
+        points,
+        style,
+    }
 }
 
 /// Points of one curve.
@@ -235,7 +251,8 @@ const QUANTITIES: [Quantity; 4] = [
     },
 ];
 
-/// How a swept parameter is written at an axis and in a caption: what it is with its unit, and its symbol.
+/// How a swept parameter is written at an axis and in a caption: what it is with its unit, and its
+/// symbol.
 fn parameter(name: &str) -> [&str; 2] {
     match name {
         "amplitude" => ["amplitude A (rad)", "A"],
@@ -287,8 +304,8 @@ fn axis_label(axis: &Axis) -> String {
     }
 }
 
-/// Curves over one parameter, or a heat map over two: of the rest time where a motion has one, otherwise of the number of
-/// impacts.
+/// Curves over one parameter, or a heat map over two: of the rest time where a motion has one,
+/// otherwise of the number of impacts.
 ///
 /// # Errors
 /// As [`figure`].
@@ -319,15 +336,17 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
             let mut order: Vec<usize> = (0..values.len()).collect();
             order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
             let x_label = axis_label(one);
-            // A motion without the quantity interrupts the curve: nothing is drawn across what is not there, and one point
-            // alone is no curve.
+            // A motion without the quantity interrupts the curve: nothing is drawn across what is
+            // not there, and one point alone is no curve.
             let runs = |quantity: &Quantity| -> Vec<Points> {
                 let found: Vec<Option<(f64, f64)>> = order
                     .iter()
                     .map(|&index| Some((values[index], (quantity.value)(report.rows.get(index)?)?)))
                     .collect();
                 let unbroken = found.split(Option::is_none).filter(|run| run.len() > 1);
-                unbroken.map(|run| run.iter().copied().flatten().collect()).collect()
+                unbroken
+                    .map(|run| run.iter().copied().flatten().collect())
+                    .collect()
             };
             let drawn: Vec<(&Quantity, Vec<Points>)> = QUANTITIES
                 .iter()
@@ -348,7 +367,11 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
                     ..Panel::default()
                 })
                 .collect();
-            let restless = report.rows.iter().filter(|row| row.rest_time.is_err()).count();
+            let restless = report
+                .rows
+                .iter()
+                .filter(|row| row.rest_time.is_err())
+                .count();
             let mut caption = format!("{} motions, {}.", report.rows.len(), range(one));
             if restless > 0 {
                 caption.push_str(&format!(" No rest time in {restless} of them."));
@@ -357,7 +380,11 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
         }
         [down, across] => {
             let [rest, impacts, ..] = &QUANTITIES;
-            let restless = report.rows.iter().filter(|row| row.rest_time.is_err()).count();
+            let restless = report
+                .rows
+                .iter()
+                .filter(|row| row.rest_time.is_err())
+                .count();
             let total = report.rows.len();
             let quantity = if restless < total { rest } else { impacts };
             let grid: Vec<Vec<f64>> = report
@@ -386,7 +413,8 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
     }
 }
 
-/// The rows as the library draws them, upwards and to the right: an axis that falls is turned round.
+/// The rows as the library draws them, upwards and to the right: an axis that falls is turned
+/// round.
 fn rising(grid: &[Vec<f64>], down_rises: bool, across_rises: bool) -> Vec<Vec<f64>> {
     let mut rows = grid.to_vec();
     if !down_rises {
@@ -398,7 +426,8 @@ fn rising(grid: &[Vec<f64>], down_rises: bool, across_rises: bool) -> Vec<Vec<f6
     rows
 }
 
-/// Where the values of an axis stand on a map, at equal distances: at themselves, at their exponents, or one after the other.
+/// Where the values of an axis stand on a map, at equal distances: at themselves, at their
+/// exponents, or one after the other.
 struct Ruler {
     /// The places of the first value and the last.
     ends: [f64; 2],
@@ -427,8 +456,15 @@ impl Ruler {
                     whole if (exponent - whole).abs() < 1e-9 => power_of_ten(whole as i32),
                     _ => significant(10_f64.powf(exponent), 3),
                 };
-                let small = STEPS.into_iter().find(|step| span >= 2.0 * step).unwrap_or(span / 3.0);
-                let step = if span > 6.0 { (span / 6.0).ceil() } else { small };
+                let small = STEPS
+                    .into_iter()
+                    .find(|step| span >= 2.0 * step)
+                    .unwrap_or(span / 3.0);
+                let step = if span > 6.0 {
+                    (span / 6.0).ceil()
+                } else {
+                    small
+                };
                 Self {
                     ends,
                     ticks: TickFormat::Custom(Arc::new(ticks)),
@@ -469,8 +505,14 @@ impl Ruler {
 /// The colour of a cell without a value.
 const MISSING: &str = "#c8c8c8";
 
-/// A cell for each motion, grey where its value is no number, with the quantity and its unit at the scale of colours.
-fn heat_map(grid: &[Vec<f64>], [down, across]: [&Axis; 2], quantity: &Quantity, caption: &str) -> String {
+/// A cell for each motion, grey where its value is no number, with the quantity and its unit at the
+/// scale of colours.
+fn heat_map(
+    grid: &[Vec<f64>],
+    [down, across]: [&Axis; 2],
+    quantity: &Quantity,
+    caption: &str,
+) -> String {
     let (down_ruler, across_ruler) = (Ruler::of(down), Ruler::of(across));
     let (x, y) = (
         across_ruler.range(across.values().len()),
@@ -478,9 +520,11 @@ fn heat_map(grid: &[Vec<f64>], [down, across]: [&Axis; 2], quantity: &Quantity, 
     );
     let map = Heatmap::new()
         .with_data(rising(grid, down_ruler.rises(), across_ruler.rises()))
-        .with_color_map(ColorMap::Custom(Arc::new(|part: f64| match part.is_finite() {
-            true => ColorMap::Viridis.map(part),
-            false => MISSING.to_owned(),
+        .with_color_map(ColorMap::Custom(Arc::new(|part: f64| {
+            match part.is_finite() {
+                true => ColorMap::Viridis.map(part),
+                false => MISSING.to_owned(),
+            }
         })))
         .with_x_range(x.0, x.1)
         .with_y_range(y.0, y.1);
@@ -494,7 +538,10 @@ fn heat_map(grid: &[Vec<f64>], [down, across]: [&Axis; 2], quantity: &Quantity, 
     (layout.x_axis_min, layout.x_axis_max) = (Some(x.0), Some(x.1));
     (layout.y_axis_min, layout.y_axis_max) = (Some(y.0), Some(y.1));
     layout.show_colorbar = true;
-    let mut scene = render_multiple(vec![Plot::Heatmap(map)], layout.with_width(700.0).with_height(480.0));
+    let mut scene = render_multiple(
+        vec![Plot::Heatmap(map)],
+        layout.with_width(700.0).with_height(480.0),
+    );
     scene.width += 26.0;
     let (x, y) = (scene.width - 10.0, 0.5 * scene.height - 4.0);
     scene.add(Primitive::Text {
@@ -525,17 +572,27 @@ mod tests {
         let place = |down: &Axis, across: &Axis| {
             let svg = heat_map(&grid, [down, across], &QUANTITIES[0], "Two by two.");
             let number = |cell: &str, key: &str| -> f64 {
-                let rest = cell.split(&format!(" {key}=\"")).nth(1).expect("a coordinate");
+                let rest = cell
+                    .split(&format!(" {key}=\""))
+                    .nth(1)
+                    .expect("a coordinate");
                 rest.split('"')
                     .next()
                     .and_then(|text| text.parse().ok())
                     .expect("a number")
             };
             // The cells are the rectangles of the clipped group, set in by four spaces.
-            let cells: Vec<&str> = svg.lines().filter(|line| line.starts_with("    <rect")).collect();
+            let cells: Vec<&str> = svg
+                .lines()
+                .filter(|line| line.starts_with("    <rect"))
+                .collect();
             assert_eq!(cells.len(), 4);
-            let (hot, cold): (Vec<&str>, Vec<&str>) = cells.iter().partition(|cell| cell.contains("#fde725"));
-            let side = |key| cold.iter().any(|cell| number(cell, key) > number(hot[0], key));
+            let (hot, cold): (Vec<&str>, Vec<&str>) =
+                cells.iter().partition(|cell| cell.contains("#fde725"));
+            let side = |key| {
+                cold.iter()
+                    .any(|cell| number(cell, key) > number(hot[0], key))
+            };
             (side("x"), side("y"))
         };
         let (left, above) = (true, true);

@@ -1,4 +1,5 @@
-//! A chain of closed forms as LaTeX: its contacts with their errors, and the formula of every phase.
+//! A chain of closed forms as LaTeX: its contacts with their errors, and the formula of every
+//! phase.
 
 use std::fmt::Write as _;
 
@@ -32,7 +33,11 @@ pub fn simulation(report: &Report) -> String {
     text.push_str("% In each line t counts from the beginning of the phase; the second argument of sn is m = k^2.\n");
     for pieces in chain::phases(motion).chunks(LINES) {
         let lines: Vec<String> = pieces.iter().map(phase).collect();
-        let _ = writeln!(text, "\\begin{{align*}}\n{}\n\\end{{align*}}", lines.join(" \\\\\n"));
+        let _ = writeln!(
+            text,
+            "\\begin{{align*}}\n{}\n\\end{{align*}}",
+            lines.join(" \\\\\n")
+        );
     }
     let _ = match motion.rest().time {
         Ok(time) => writeln!(text, "\\[ t_{{\\text{{rest}}}} = {} \\]", scientific(time)),
@@ -74,7 +79,10 @@ fn impacts(report: &Report) -> String {
                 error.map(|e| format!("${}$", scientific((1e6 * e.entry_time).round() / 1e6)))
             ),
             cell(impact.speed_in, error.and_then(|e| e.speed_in).map(percent)),
-            cell(impact.penetration, error.and_then(|e| e.penetration).map(percent))
+            cell(
+                impact.penetration,
+                error.and_then(|e| e.penetration).map(percent)
+            )
         );
     }
     text.push_str("\\end{tabular}\n");
@@ -125,7 +133,13 @@ fn phase(piece: &Piece) -> String {
             sines,
         } => {
             let wave = std::f64::consts::PI / duration;
-            let term = |(j, sine): (u32, f64)| format!("{} \\sin({} t)", signed(sine), scientific(f64::from(j) * wave));
+            let term = |(j, sine): (u32, f64)| {
+                format!(
+                    "{} \\sin({} t)",
+                    signed(sine),
+                    scientific(f64::from(j) * wave)
+                )
+            };
             let [first, second, third] = sines;
             // In one line they are wider than a page.
             format!(

@@ -1,8 +1,9 @@
-//! A simulated motion, and a sweep of many: as text, table of comma-separated values, and pictures; as documents they are in
-//! `export::json`.
+//! A simulated motion, and a sweep of many: as text, table of comma-separated values, and pictures;
+//! as documents they are in `export::json`.
 //!
-//! In: a [`Report`] of one motion or a [`SweepReport`] of many. Out: text in one format; that of a sweep goes to a writer a line
-//! at a time. Angles are in rad, times in units of 1/omega, energies in units of m g L, as in the motion itself.
+//! In: a [`Report`] of one motion or a [`SweepReport`] of many. Out: text in one format; that of a
+//! sweep goes to a writer a line at a time. Angles are in rad, times in units of 1/omega, energies
+//! in units of m g L, as in the motion itself.
 
 mod chain;
 mod columns;
@@ -37,13 +38,15 @@ pub struct Report<'a> {
     pub tolerance: f64,
     /// Times at which the state is wanted, all within the duration.
     pub samples: &'a [f64],
-    /// The rest times of the same swing without a barrier and with a lossless one, where there is something to compare.
+    /// The rest times of the same swing without a barrier and with a lossless one, where there is
+    /// something to compare.
     pub baseline: Option<&'a Baseline>,
     /// What damps it, in every form, where that is known.
     pub dissipation: Option<&'a Dissipation>,
     /// The pendulum in SI units, where they are known.
     pub units: Option<&'a Units>,
-    /// Until when it is known to six digits, if not to the end ([`known_until`](crate::impact::known_until)).
+    /// Until when it is known to six digits, if not to the end
+    /// ([`known_until`](crate::impact::known_until)).
     pub known_until: Option<f64>,
 }
 
@@ -110,7 +113,11 @@ pub(super) fn notes(report: &Report) -> Vec<String> {
     }
     // So small a part of the energy at the start is what rounding leaves of none.
     if let Some(first) = motion.impacts.first()
-        && first.speed_in * first.speed_in < 1e-12 * motion.model.swing_energy(motion.start.x, motion.start.velocity)
+        && first.speed_in * first.speed_in
+            < 1e-12
+                * motion
+                    .model
+                    .swing_energy(motion.start.x, motion.start.velocity)
     {
         notes.push(format!(
             "the first impact is no faster than {}: the {} barrier stands where the swing turns back, and rounding decides whether it is touched",
@@ -132,7 +139,11 @@ pub(super) fn notes(report: &Report) -> Vec<String> {
             decimal(depth)
         ));
     }
-    if motion.impacts.last().is_some_and(|impact| impact.exit_time.is_none()) {
+    if motion
+        .impacts
+        .last()
+        .is_some_and(|impact| impact.exit_time.is_none())
+    {
         notes.push("the run ends in contact: the last impact has no exit".to_owned());
     }
     notes

@@ -7,7 +7,8 @@ use super::{COMPARED, Report, SweepReport, chain, friction, notes};
 use crate::decimal::{decimal, significant};
 use crate::impact::sweep::Axis;
 use crate::impact::{
-    Baseline, Contact, ContactDamping, Dissipation, Geometry, Integrator, Model, NoRest, Simulation, Units,
+    Baseline, Contact, ContactDamping, Dissipation, Geometry, Integrator, Model, NoRest,
+    Simulation, Units,
 };
 
 /// Impacts that are listed; a long run has thousands.
@@ -43,15 +44,24 @@ pub fn simulation(report: &Report) -> String {
         chain::formulas(&mut text, motion);
     }
     rest(&mut text, report);
-    // The formulas of a chain know the energy at the ends of each phase; their own velocities do not close its books.
+    // The formulas of a chain know the energy at the ends of each phase; their own velocities do
+    // not close its books.
     if motion.integrator != Integrator::Chain {
         energy(&mut text, motion);
     }
     if !report.samples.is_empty() {
-        let _ = writeln!(text, "\nStates asked for\n  {:>12}  {:>16}  {:>16}", "t", "x", "x'");
+        let _ = writeln!(
+            text,
+            "\nStates asked for\n  {:>12}  {:>16}  {:>16}",
+            "t", "x", "x'"
+        );
         for &t in report.samples {
             let state = match motion.path.at(t) {
-                Some((x, velocity)) => format!("{:>16}  {:>16}", significant(x, 10), significant(velocity, 10)),
+                Some((x, velocity)) => format!(
+                    "{:>16}  {:>16}",
+                    significant(x, 10),
+                    significant(velocity, 10)
+                ),
                 None => format!("{:>16}", "not reached"),
             };
             let _ = writeln!(text, "  {:>12}  {state}", decimal(t));
@@ -64,7 +74,13 @@ pub fn simulation(report: &Report) -> String {
         significant(motion.end_x, 10),
         significant(motion.end_velocity, 10)
     );
-    let _ = writeln!(text, "  {} in {} steps; {}", method(motion), motion.steps, motion.stop);
+    let _ = writeln!(
+        text,
+        "  {} in {} steps; {}",
+        method(motion),
+        motion.steps,
+        motion.stop
+    );
     if let Some(judge) = report.judge {
         let difference = motion.difference(judge, COMPARED);
         let _ = writeln!(
@@ -139,7 +155,11 @@ fn header(report: &Report) -> String {
         crate::impact::Friction::Arctangent => " + (2/pi)*alpha*atan(100*x')",
     };
     let viscous = if zeta == 0.0 { "" } else { " + 2*zeta*x'" };
-    let drive = if beta == 0.0 { "" } else { " - beta*sin(eta*t)*cos(x)" };
+    let drive = if beta == 0.0 {
+        ""
+    } else {
+        " - beta*sin(eta*t)*cos(x)"
+    };
     let free = left.or(right).is_none();
     let left_alone = left.is_some() && right.is_none();
     let contact = match (mu == 0.0, left_alone) {
@@ -185,7 +205,11 @@ fn header(report: &Report) -> String {
     if beta != 0.0 {
         entry(
             "beta",
-            format!("{}, eta = Omega/omega = {}", decimal(beta), decimal(frequency_ratio)),
+            format!(
+                "{}, eta = Omega/omega = {}",
+                decimal(beta),
+                decimal(frequency_ratio)
+            ),
         );
     }
     text
@@ -213,7 +237,10 @@ fn damping(dissipation: &Dissipation, has_barrier: bool, units: Option<&Units>) 
         .into_iter()
         .filter(|form| contact || *form != dissipation.contact.form().name())
         .collect();
-    let mut text = format!("\nDamping, in every form; held fixed: {}\n", held.join(", "));
+    let mut text = format!(
+        "\nDamping, in every form; held fixed: {}\n",
+        held.join(", ")
+    );
     let mut entry = |name: &str, forms: Vec<String>| {
         let _ = writeln!(text, "  {name:<9} {}", forms.join(", "));
     };
@@ -229,19 +256,26 @@ fn damping(dissipation: &Dissipation, has_barrier: bool, units: Option<&Units>) 
         forms.extend(in_si("lambda", lambda, "s/m"));
         forms.extend(in_si("damping", coefficient, "N s/m^(5/2)"));
         entry("contact", forms);
-        if let (ContactDamping::Restitution(e), Some(speed)) = (dissipation.contact, dissipation.at_speed_in_words()) {
+        if let (ContactDamping::Restitution(e), Some(speed)) =
+            (dissipation.contact, dissipation.at_speed_in_words())
+        {
             let given = format!("restitution = {} at the speed {speed}", decimal(e));
             entry("", vec![given]);
         }
         if let (Some(e), Some(speed)) = (dissipation.restitution, dissipation.touch_speed) {
             let (e, speed) = (decimal(e), decimal(speed));
-            let words = format!("restitution {e} at {speed} rad*omega, the speed of the first touch without damping");
+            let words = format!(
+                "restitution {e} at {speed} rad*omega, the speed of the first touch without damping"
+            );
             entry("", vec![words]);
         }
     }
     if zeta != 0.0 {
         let zeta = vec![format!("zeta = {}", decimal(zeta))];
-        entry("viscous", [zeta, in_si("viscous", viscous, "N s/m")].concat());
+        entry(
+            "viscous",
+            [zeta, in_si("viscous", viscous, "N s/m")].concat(),
+        );
     }
     if alpha != 0.0 {
         let alpha = vec![format!("alpha = {}", decimal(alpha))];
@@ -266,22 +300,43 @@ fn impacts(text: &mut String, motion: &Simulation) {
     let _ = writeln!(
         text,
         "  {:>4}  {:5}  {:>12}  {:>12}  {:>10}  {:>10}  {:>12}  {:>11}  {:>12}",
-        "", "side", "entry", "duration", "speed in", "speed out", "penetration", "restitution", "energy lost"
+        "",
+        "side",
+        "entry",
+        "duration",
+        "speed in",
+        "speed out",
+        "penetration",
+        "restitution",
+        "energy lost"
     );
     let optional = |value: Option<f64>| value.map_or("-".to_owned(), decimal);
     for (index, impact) in motion.impacts.iter().enumerate() {
         if count > LISTED && index == LISTED - 1 && index + 1 < count {
-            let _ = writeln!(text, "   ... {} more, all of them in --format json", count - LISTED);
+            let _ = writeln!(
+                text,
+                "   ... {} more, all of them in --format json",
+                count - LISTED
+            );
         }
         if count > LISTED && index >= LISTED - 1 && index + 1 < count {
             continue;
         }
         // What is lost in an elastic contact is rounding.
         let lost = impact.energy_lost.map(|lost| {
-            let speed = impact.speed_in.abs().max(impact.speed_out.unwrap_or_default());
-            if lost.abs() < 1e-9 * speed * speed { 0.0 } else { lost }
+            let speed = impact
+                .speed_in
+                .abs()
+                .max(impact.speed_out.unwrap_or_default());
+            if lost.abs() < 1e-9 * speed * speed {
+                0.0
+            } else {
+                lost
+            }
         });
-        let restitution = impact.restitution.map(|e| if (e - 1.0).abs() < 1e-9 { 1.0 } else { e });
+        let restitution = impact
+            .restitution
+            .map(|e| if (e - 1.0).abs() < 1e-9 { 1.0 } else { e });
         let _ = writeln!(
             text,
             "  {:>4}  {:5}  {:>12}  {:>12}  {:>10}  {:>10}  {:>12}  {:>11}  {:>12}",
@@ -298,7 +353,8 @@ fn impacts(text: &mut String, motion: &Simulation) {
     }
 }
 
-/// How long an impact lasts, as far as its two times tell: one of a barrier too stiff is shorter than their last digit.
+/// How long an impact lasts, as far as its two times tell: one of a barrier too stiff is shorter
+/// than their last digit.
 pub(super) fn duration(impact: &Contact) -> String {
     let least = 2.0 * f64::EPSILON * impact.entry_time.abs();
     match impact.exit_time.map(|exit| exit - impact.entry_time) {
@@ -320,7 +376,11 @@ fn rest(text: &mut String, report: &Report) {
     };
     let _ = match rest.amplitude {
         0.0 => writeln!(text, "\nRest"),
-        amplitude => writeln!(text, "\nRest: 10 % of the amplitude {}{about}", decimal(amplitude)),
+        amplitude => writeln!(
+            text,
+            "\nRest: 10 % of the amplitude {}{about}",
+            decimal(amplitude)
+        ),
     };
     let _ = match rest.time {
         Ok(time) => writeln!(
@@ -332,7 +392,11 @@ fn rest(text: &mut String, report: &Report) {
         Err(reason) => writeln!(text, "  rest time      none: {reason}"),
     };
     if let (Integrator::Chain, Some(judge)) = (report.motion.integrator, report.judge) {
-        let _ = writeln!(text, "  integrated     {}", chain::beside(rest.time, judge.rest().time));
+        let _ = writeln!(
+            text,
+            "  integrated     {}",
+            chain::beside(rest.time, judge.rest().time)
+        );
     }
     if let Some(last) = rest.last_crossing {
         let _ = writeln!(text, "  last crossing  {}", decimal(last));
@@ -350,7 +414,11 @@ fn rest(text: &mut String, report: &Report) {
         Err(reason) => format!("none: {reason}"),
     };
     let _ = writeln!(text, "  no barrier     {}", written(no_barrier));
-    let _ = writeln!(text, "  lossless       {}   (mu = 0)", written(lossless_barrier));
+    let _ = writeln!(
+        text,
+        "  lossless       {}   (mu = 0)",
+        written(lossless_barrier)
+    );
     if let (Ok(none), Ok(lossless), Ok(this)) = (no_barrier, lossless_barrier, rest.time) {
         let _ = writeln!(
             text,
@@ -413,7 +481,8 @@ fn energy(text: &mut String, motion: &Simulation) {
     );
 }
 
-/// A sweep, a line at a time, for there may be a million. Of three parameters or more the last two make a block.
+/// A sweep, a line at a time, for there may be a million. Of three parameters or more the last two
+/// make a block.
 ///
 /// # Errors
 /// What the writer says.
@@ -460,10 +529,16 @@ pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
         let written = |time: Result<f64, NoRest>| time.map_or("-".to_owned(), decimal);
         let rest = written(summary.rest_time);
         let beside = match summary.baseline {
-            Some([without, lossless]) => format!("{:>13}{:>13}", written(without), written(lossless)),
+            Some([without, lossless]) => {
+                format!("{:>13}{:>13}", written(without), written(lossless))
+            }
             None => String::new(),
         };
-        let warning = if summary.stop.is_complete() { "" } else { "  incomplete" };
+        let warning = if summary.stop.is_complete() {
+            ""
+        } else {
+            "  incomplete"
+        };
         let lost = if summary.energy_lost.abs() < 1e-9 {
             0.0
         } else {

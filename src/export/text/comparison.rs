@@ -18,7 +18,10 @@ pub(super) fn longest_title(document: &Document) -> usize {
     let length = |title: &str| title.chars().count();
     let longest = |block: &Block| match block {
         Block::Methods { rows, .. } => rows.iter().map(|row| length(&row.title)).max(),
-        Block::Refused(refused) => refused.iter().map(|refused| length(refused.method.title())).max(),
+        Block::Refused(refused) => refused
+            .iter()
+            .map(|refused| length(refused.method.title()))
+            .max(),
         _ => None,
     };
     document
@@ -36,7 +39,10 @@ pub(super) fn truth(equation: &Equation, at: &Values, frequency: &Result<f64, St
 
 /// The frequency that a table is compared with.
 pub(in crate::export) fn true_frequency(at: &Values, frequency: &Result<f64, String>) -> String {
-    let at: Vec<String> = at.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    let at: Vec<String> = at
+        .iter()
+        .map(|(name, value)| format!("{name} = {value}"))
+        .collect();
     let place = match at.is_empty() {
         true => String::new(),
         false => format!(" at {}", at.join(", ")),
@@ -66,7 +72,9 @@ pub(super) fn methods(rows: &[MethodRow], tolerance: f64, page: &Page) -> String
 }
 
 /// Names together of which the same is said, and that.
-pub(in crate::export) fn grouped(entries: impl Iterator<Item = (String, String)>) -> Vec<(Vec<String>, String)> {
+pub(in crate::export) fn grouped(
+    entries: impl Iterator<Item = (String, String)>,
+) -> Vec<(Vec<String>, String)> {
     let mut groups: Vec<(Vec<String>, String)> = Vec::new();
     for (name, words) in entries {
         match groups.iter_mut().find(|(_, known)| *known == words) {
@@ -107,7 +115,9 @@ pub(super) fn refused(refused: &[Refused], page: &Page) -> String {
 }
 
 pub(super) fn true_motion(lines: &[String], width: usize) -> String {
-    let lines = lines.iter().map(|line| wrapped(line, width, "  ", "    ") + "\n");
+    let lines = lines
+        .iter()
+        .map(|line| wrapped(line, width, "  ", "    ") + "\n");
     "True motion\n".to_owned() + &lines.collect::<String>()
 }
 
@@ -118,27 +128,51 @@ pub(in crate::export) fn cells(rows: &[MethodRow], tolerance: f64) -> Vec<[Strin
         .any(|row| matches!(row.row.reach, Some(Reach::Between { .. })));
     let range = if over_several_wells { "for" } else { "up to" };
     let within = format!("{} % {range}", significant(100.0 * tolerance, 3));
-    let header = ["method", FREQUENCY.written(), "error", "deviation", "verdict", &within].map(str::to_owned);
+    let header = [
+        "method",
+        FREQUENCY.written(),
+        "error",
+        "deviation",
+        "verdict",
+        &within,
+    ]
+    .map(str::to_owned);
     // All rows start where the first one does, whatever their formulas measure.
-    let amplitude = rows.first().map(|first| first.row.solution.amplitude.symbol());
+    let amplitude = rows
+        .first()
+        .map(|first| first.row.solution.amplitude.symbol());
     let cells = |MethodRow { row, title, .. }: &MethodRow| {
         [
             title.clone(),
-            row.frequency.map_or_else(|| without_number(row).to_owned(), decimal),
+            row.frequency
+                .map_or_else(|| without_number(row).to_owned(), decimal),
             row.relative_error.map_or("-".to_owned(), percent),
             row.max_deviation.map_or("-".to_owned(), size_in_percent),
             row.verdict.map_or("-", Verdict::name).to_owned(),
             reach(row.reach.zip(amplitude)),
         ]
     };
-    std::iter::once(header).chain(rows.iter().map(cells)).collect()
+    std::iter::once(header)
+        .chain(rows.iter().map(cells))
+        .collect()
 }
 
 fn widths(cells: &[[String; 6]]) -> [usize; 6] {
-    std::array::from_fn(|column| cells.iter().map(|row| row[column].chars().count()).max().unwrap_or(0))
+    std::array::from_fn(|column| {
+        cells
+            .iter()
+            .map(|row| row[column].chars().count())
+            .max()
+            .unwrap_or(0)
+    })
 }
 
-fn table(cells: &[[String; 6]], mut widths: [usize; 6], formulas: Option<&Vec<String>>, width: usize) -> String {
+fn table(
+    cells: &[[String; 6]],
+    mut widths: [usize; 6],
+    formulas: Option<&Vec<String>>,
+    width: usize,
+) -> String {
     let numbers: usize = widths[1..].iter().map(|width| width + 2).sum();
     // Names may take a second line; numbers may not.
     const NARROWEST: usize = 16;
@@ -176,8 +210,8 @@ fn entry(name: &str, words: &str, longest: usize, width: usize) -> String {
     wrapped(words, width, &first, &" ".repeat(longest + 4)) + "\n"
 }
 
-/// Text in lines of at most `width` characters, `first` before the first of them and `next` before the others. A sign stays
-/// with the term that it belongs to, and a value with its name.
+/// Text in lines of at most `width` characters, `first` before the first of them and `next` before
+/// the others. A sign stays with the term that it belongs to, and a value with its name.
 pub(super) fn wrapped(text: &str, width: usize, first: &str, next: &str) -> String {
     let mut lines = vec![first.to_owned()];
     let mut indent = first.chars().count();
@@ -235,6 +269,8 @@ fn reach(reach: Option<(Reach, Symbol)>) -> String {
             let past = if open { "past " } else { "" };
             format!("{amplitude} = {from} to {past}{to}")
         }
-        Some((Reach::Everywhere(searched), amplitude)) => format!("past {amplitude} = {}", significant(searched, 3)),
+        Some((Reach::Everywhere(searched), amplitude)) => {
+            format!("past {amplitude} = {}", significant(searched, 3))
+        }
     }
 }

@@ -8,7 +8,13 @@ use crate::impact::{FittedLine, ImpactRow, Letters, Phase, Quantity, Reading, Ru
 use crate::verify::Verdict;
 
 /// The line in place of the force of the barrier.
-pub(super) fn fitted(fitted: &FittedLine, barrier: f64, rule: Rule, letters: Letters, per_stiffness: bool) -> String {
+pub(super) fn fitted(
+    fitted: &FittedLine,
+    barrier: f64,
+    rule: Rule,
+    letters: Letters,
+    per_stiffness: bool,
+) -> String {
     let constant = fitted.line.q(barrier);
     let line = format!(
         "{}*{} {} {}",
@@ -43,7 +49,12 @@ pub(super) fn phase(phase: &Phase, letters: Letters, release: &str) -> String {
 }
 
 /// A table: Runge-Kutta and every column, and below each number its error.
-pub(super) fn quantities(columns: &[Reading], rows: &[Quantity], deviations: &[f64], shapes: &[[f64; 3]]) -> String {
+pub(super) fn quantities(
+    columns: &[Reading],
+    rows: &[Quantity],
+    deviations: &[f64],
+    shapes: &[[f64; 3]],
+) -> String {
     let line = |name: &str, cells: Vec<String>| {
         let cells: String = cells.iter().map(|cell| format!("{cell:>13}")).collect();
         format!("  {name:<19}{cells}").trim_end().to_owned()
@@ -56,7 +67,10 @@ pub(super) fn quantities(columns: &[Reading], rows: &[Quantity], deviations: &[f
     for row in rows {
         let values = &mut row.closed_forms.iter().map(|value| decimal(*value));
         lines.push(line(row.name, first(values, decimal(row.runge_kutta))));
-        lines.push(line("", first(&mut row.errors().map(percent), String::new())));
+        lines.push(line(
+            "",
+            first(&mut row.errors().map(percent), String::new()),
+        ));
     }
     let size = |size: f64| format!("{} %", significant(100.0 * size, 3));
     let deviations = &mut deviations.iter().map(|deviation| size(*deviation));
@@ -80,7 +94,9 @@ pub(super) fn contact_laws(rows: &[ContactRow]) -> String {
     let head = ["duration", "penetration", "peak force", "motion"];
     let mut text = line("", head.map(str::to_owned));
     for row in rows {
-        let Ok((motion, errors)) = &row.outcome else { continue };
+        let Ok((motion, errors)) = &row.outcome else {
+            continue;
+        };
         let numbers = [motion.duration, motion.depth, motion.peak_force].map(decimal);
         let [duration, depth, force] = numbers;
         text += &line(row.law.name(), [duration, depth, force, String::new()]);
@@ -108,7 +124,11 @@ pub(super) fn methods(rows: &[ImpactRow], truth: [f64; 5], tolerance: f64, width
         "return",
     ];
     let titles: Vec<String> = rows.iter().map(ImpactRow::title).collect();
-    let longest = titles.iter().map(|title| title.chars().count()).max().unwrap_or(0);
+    let longest = titles
+        .iter()
+        .map(|title| title.chars().count())
+        .max()
+        .unwrap_or(0);
     // Names stand on lines of their own where the numbers leave no room beside them.
     let beside = longest + 88 <= width;
     let line = |name: &str, cells: [String; 8], last: &str| {
@@ -155,7 +175,13 @@ pub(super) fn methods(rows: &[ImpactRow], truth: [f64; 5], tolerance: f64, width
 }
 
 /// A quantity in SI units, with its formula.
-pub(super) fn si_value(name: &str, formula: Option<&str>, value: f64, unit: &str, words: &str) -> String {
+pub(super) fn si_value(
+    name: &str,
+    formula: Option<&str>,
+    value: f64,
+    unit: &str,
+    words: &str,
+) -> String {
     let formula = formula.map_or(String::new(), |formula| format!("{formula} = "));
     let number = format!("{} {unit}", decimal(value));
     format!("  {name:<5} = {formula}{}   ({words})\n", number.trim_end())
@@ -192,7 +218,11 @@ pub(super) fn verdicts(verdicts: &[(Reading, Verdict)], tolerance: f64) -> Strin
     )
 }
 
-pub(in crate::export) fn shortcoming(reading: Reading, errors: &[(&'static str, f64)], cause: &str) -> String {
+pub(in crate::export) fn shortcoming(
+    reading: Reading,
+    errors: &[(&'static str, f64)],
+    cause: &str,
+) -> String {
     let errors: Vec<String> = errors
         .iter()
         .map(|(name, error)| format!("{name} {}", percent(*error)))

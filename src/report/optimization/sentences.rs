@@ -1,4 +1,5 @@
-//! What the numbers of a search say, in sentences: what decides, how its optimum compares with the paper's design and with other searches.
+//! What the numbers of a search say, in sentences: what decides, how its optimum compares with the
+//! paper's design and with other searches.
 
 use super::super::materials::percent;
 use super::{closed_forms_off, with_unit};
@@ -21,7 +22,11 @@ pub fn optimization_sentences(study: &Study) -> Vec<String> {
     let mut sentences = Vec::new();
     if !study.complete {
         let (done, all) = (study.runs.len(), study.question.runs);
-        let cut_short = study.runs.iter().filter(|run| run.stop == Stop::Interrupted).count();
+        let cut_short = study
+            .runs
+            .iter()
+            .filter(|run| run.stop == Stop::Interrupted)
+            .count();
         let of_these = match cut_short {
             0 => String::new(),
             number => format!(", {number} of them cut short"),
@@ -60,13 +65,18 @@ fn apart(value: f64, reference: f64) -> Option<f64> {
 /// A search that finds a design better by this part has shown that the best one here is no optimum.
 const BETTER: f64 = 1e-3;
 
-/// Who found a better design than the best one of the study, and by which part it is better; `None` where nobody did.
+/// Who found a better design than the best one of the study, and by which part it is better; `None`
+/// where nobody did.
 fn found_better(study: &Study, decision: &Decision) -> Option<(String, f64)> {
     let own = study.spread()?.best;
     let rivals = study.rivals.iter();
-    let rivals = rivals.filter_map(|rival| Some((rival.name.to_owned(), -apart(rival.spread()?.best, own)?)));
-    let alone = apart(decision.least, decision.value).map(|apart| ("a look around it".to_owned(), -apart));
-    let best = rivals.chain(alone).max_by(|one, other| one.1.total_cmp(&other.1));
+    let rivals = rivals
+        .filter_map(|rival| Some((rival.name.to_owned(), -apart(rival.spread()?.best, own)?)));
+    let alone =
+        apart(decision.least, decision.value).map(|apart| ("a look around it".to_owned(), -apart));
+    let best = rivals
+        .chain(alone)
+        .max_by(|one, other| one.1.total_cmp(&other.1));
     // What closed forms are off decides nothing.
     best.filter(|(_, better)| *better > BETTER.max(closed_forms_off(study)))
 }
@@ -84,7 +94,10 @@ fn what_decides(study: &Study) -> Vec<String> {
         found.collect::<Vec<_>>()
     };
     let names = |found: &[&Sensitivity]| {
-        let names: Vec<&str> = found.iter().map(|sensitivity| sensitivity.parameter.name()).collect();
+        let names: Vec<&str> = found
+            .iter()
+            .map(|sensitivity| sensitivity.parameter.name())
+            .collect();
         listed(&names)
     };
     let mut sentences = Vec::new();
@@ -125,7 +138,8 @@ fn what_decides(study: &Study) -> Vec<String> {
         let least = sensitivity.range.map_or(f64::INFINITY, |[least, _]| least);
         least >= decision.value * (1.0 - BETTER)
     };
-    let (trade, elsewhere): (Vec<_>, Vec<_>) = of(Role::Trade).into_iter().partition(is_worse_everywhere);
+    let (trade, elsewhere): (Vec<_>, Vec<_>) =
+        of(Role::Trade).into_iter().partition(is_worse_everywhere);
     if !trade.is_empty() {
         sentences.push(format!(
             "A trade: {} between the limits, {objective} is worse on either side.",
@@ -178,9 +192,18 @@ fn flat_directions(flat: &[&Sensitivity], objective: &str) -> String {
             None => sensitivity.parameter.name().to_owned(),
         })
         .collect();
-    let free = flat.iter().all(|sensitivity| sensitivity.alone == sensitivity.limits);
-    let but = if free { "" } else { " but where constraints end" };
-    let names: Vec<&str> = flat.iter().map(|sensitivity| sensitivity.parameter.name()).collect();
+    let free = flat
+        .iter()
+        .all(|sensitivity| sensitivity.alone == sensitivity.limits);
+    let but = if free {
+        ""
+    } else {
+        " but where constraints end"
+    };
+    let names: Vec<&str> = flat
+        .iter()
+        .map(|sensitivity| sensitivity.parameter.name())
+        .collect();
     format!(
         "Flat directions: over the whole range, the others held, {objective} changes by no more than 1 % ({}); what was found for {} says \
          nothing{but}.",
@@ -223,12 +246,18 @@ fn near_the_best(study: &Study, decision: &Decision) -> String {
 fn the_unit(study: &Study) -> Option<String> {
     let ends = study.decision.as_ref()?.ends?;
     let pair = |[short, long]: [f64; 2]| [significant(short, 4), significant(long, 4)];
-    let ([short, long], [from, to], [at, until]) = (pair(ends.seconds), pair(ends.dimensionless), pair(ends.lengths));
+    let ([short, long], [from, to], [at, until]) = (
+        pair(ends.seconds),
+        pair(ends.dimensionless),
+        pair(ends.lengths),
+    );
     let [in_seconds, in_units] = ends.best.map(|length| significant(length, 3));
     let mut turned = ends.best;
     turned.sort_by(f64::total_cmp);
     let verdict = match ends.best {
-        [one, other] if one == other => format!("in both the best length, the rest held, is {in_seconds} m"),
+        [one, other] if one == other => {
+            format!("in both the best length, the rest held, is {in_seconds} m")
+        }
         _ => format!(
             "the rest held, in seconds the best length is {in_seconds} m, in 1/omega it is {in_units} m: the choice moves the optimum{}",
             if turned == ends.lengths {
@@ -248,7 +277,10 @@ fn the_papers(study: &Study) -> Option<String> {
     let (papers, best) = (study.default_design.as_ref()?, study.best()?);
     let objective = study.objective();
     let Some(value) = objective.value(papers) else {
-        return Some("The paper's Table 5 does not rest in the time allowed under these assumptions.".to_owned());
+        return Some(
+            "The paper's Table 5 does not rest in the time allowed under these assumptions."
+                .to_owned(),
+        );
     };
     let least = best.values[0];
     let question = &study.question;
@@ -277,7 +309,10 @@ fn the_papers(study: &Study) -> Option<String> {
         remarks += &format!(" It lies outside these limits: {}.", listed(&outside));
     }
     if !other.is_empty() {
-        remarks += &format!(" It differs in what is held fixed here: {}.", listed(&other));
+        remarks += &format!(
+            " It differs in what is held fixed here: {}.",
+            listed(&other)
+        );
     }
     if !broken.is_empty() {
         remarks += &format!(" It breaks {}.", broken.join("; "));
@@ -319,7 +354,11 @@ fn the_rivals(study: &Study) -> Option<String> {
         .rivals
         .iter()
         .map(|rival| {
-            let found = rival.values.iter().filter(|value| value.is_finite()).count();
+            let found = rival
+                .values
+                .iter()
+                .filter(|value| value.is_finite())
+                .count();
             let Some(spread) = rival.spread() else {
                 return format!("{} finds no design", rival.name);
             };
@@ -354,7 +393,10 @@ fn the_generations(study: &Study) -> Option<String> {
         .filter(|run| run.stop == Stop::Stalled)
         .map(|run| run.generations)
         .collect();
-    let at_once = stalled.iter().filter(|generations| **generations == earliest).count();
+    let at_once = stalled
+        .iter()
+        .filter(|generations| **generations == earliest)
+        .count();
     let settled = study.settled(1e-3)?;
     let when = match settled {
         0 => "already in its random population".to_owned(),
@@ -368,7 +410,11 @@ fn the_generations(study: &Study) -> Option<String> {
              window of {window} allows"
         ),
     };
-    let either = if count > 0 && at_once == count { " either" } else { "" };
+    let either = if count > 0 && at_once == count {
+        " either"
+    } else {
+        ""
+    };
     Some(format!(
         "Convergence: {end}; the median run was within 0.1 % of its end {when}. The paper's 51 generations are the earliest end with the usual \
          window of 50: its best value hardly moved{either}."
@@ -388,7 +434,13 @@ fn the_front(study: &Study) -> Vec<String> {
             .iter()
             .enumerate()
             .filter(|(other, _)| *other != index)
-            .map(|(other, objective)| format!("{} {}", objective.meaning(), with_unit(*objective, least.values[other])))
+            .map(|(other, objective)| {
+                format!(
+                    "{} {}",
+                    objective.meaning(),
+                    with_unit(*objective, least.values[other])
+                )
+            })
             .collect();
         Some(format!(
             "The least of {} is {}, with {}.",
@@ -405,7 +457,8 @@ fn the_front(study: &Study) -> Vec<String> {
         .filter_map(extreme)
         .collect();
     if study.finalists.len() == 1 {
-        sentences.push("Of the designs that were followed one is the best in everything.".to_owned());
+        sentences
+            .push("Of the designs that were followed one is the best in everything.".to_owned());
     }
     sentences
 }

@@ -1,4 +1,5 @@
-//! Driven motions averaged: the rates of multiple scales, dry friction, steady motions of forces without a series.
+//! Driven motions averaged: the rates of multiple scales, dry friction, steady motions of forces
+//! without a series.
 
 use std::f64::consts::PI;
 
@@ -20,8 +21,9 @@ fn driven(equation: &str, method: Method, resonance: (u32, u32)) -> Solution {
     solve(&Oscillator::parse(equation).expect(equation), &options).expect(equation)
 }
 
-/// Away from 1:1, and to second order, averaging has the rates of multiple scales, with the motion to one order less: at every resonance
-/// that a polynomial has, the amplitudes of the true motion to that order (Bogoliubov and Mitropolsky, chapter 3).
+/// Away from 1:1, and to second order, averaging has the rates of multiple scales, with the motion
+/// to one order less: at every resonance that a polynomial has, the amplitudes of the true motion
+/// to that order (Bogoliubov and Mitropolsky, chapter 3).
 #[test]
 fn driven_motions_of_second_order() {
     for (equation, resonance, at) in [
@@ -70,10 +72,14 @@ fn driven_motions_of_second_order() {
             };
             if !solution.small_parameter.name().contains("delta") {
                 let scales = solve(&oscillator, &scales).expect(equation);
-                let [own, other] =
-                    [&solution, &scales].map(|solution| solution.modulation.as_ref().expect("slow equations"));
-                let same = |one: &Expr, other: &Expr| (one - other).expand().expect(equation).is_zero();
-                assert!(same(&own.amplitude_rate, &other.amplitude_rate), "{equation}");
+                let [own, other] = [&solution, &scales]
+                    .map(|solution| solution.modulation.as_ref().expect("slow equations"));
+                let same =
+                    |one: &Expr, other: &Expr| (one - other).expand().expect(equation).is_zero();
+                assert!(
+                    same(&own.amplitude_rate, &other.amplitude_rate),
+                    "{equation}"
+                );
                 assert!(same(&own.phase_rate, &other.phase_rate), "{equation}");
             }
             judged.relative_error.expect(equation).abs()
@@ -88,16 +94,32 @@ fn driven_motions_are_those_of_multiple_scales() {
     for (equation, resonance) in [
         ("x'' + c*x' + w^2*x + g*x^3 = F*cos(Omega*t)", (1, 1)),
         ("x'' + c*x' + w^2*x + g*x^3 = F*sin(Omega*t + phi)", (1, 1)),
-        ("x'' + c*x' + w^2*x + g*x^3 = F*cos(Omega*t) + G*sin(Omega*t)", (1, 1)),
-        ("x'' - mu*(1 - x^2)*x' + x + eps*x^3 = F*cos(Omega*t)", (1, 1)),
+        (
+            "x'' + c*x' + w^2*x + g*x^3 = F*cos(Omega*t) + G*sin(Omega*t)",
+            (1, 1),
+        ),
+        (
+            "x'' - mu*(1 - x^2)*x' + x + eps*x^3 = F*cos(Omega*t)",
+            (1, 1),
+        ),
         ("x'' + c*x' + w^2*x + g*x^3 + h*x*cos(Omega*t) = 0", (2, 1)),
-        ("x'' + c*x' + w^2*x + g*x'^3 + h*x'*sin(Omega*t) = 0", (2, 1)),
-        ("x'' + c*x' + w^2*x + g*x^3 + h*x^2*cos(Omega*t) = 0", (3, 1)),
-        ("x'' + c*x' + w^2*x + g*x^3 + h*x^3*cos(Omega*t) = 0", (2, 1)),
+        (
+            "x'' + c*x' + w^2*x + g*x'^3 + h*x'*sin(Omega*t) = 0",
+            (2, 1),
+        ),
+        (
+            "x'' + c*x' + w^2*x + g*x^3 + h*x^2*cos(Omega*t) = 0",
+            (3, 1),
+        ),
+        (
+            "x'' + c*x' + w^2*x + g*x^3 + h*x^3*cos(Omega*t) = 0",
+            (2, 1),
+        ),
     ] {
-        let [own, other] =
-            [Method::Averaging, Method::MultipleScales].map(|method| driven(equation, method, resonance));
-        let [own_slow, other_slow] = [&own, &other].map(|solution| solution.modulation.as_ref().expect(equation));
+        let [own, other] = [Method::Averaging, Method::MultipleScales]
+            .map(|method| driven(equation, method, resonance));
+        let [own_slow, other_slow] =
+            [&own, &other].map(|solution| solution.modulation.as_ref().expect(equation));
         for (rate, expected) in [
             (&own_slow.amplitude_rate, &other_slow.amplitude_rate),
             (&own_slow.phase_rate, &other_slow.phase_rate),
@@ -107,7 +129,8 @@ fn driven_motions_are_those_of_multiple_scales() {
                 "{equation}: {rate}, {expected}"
             );
         }
-        let [own, other] = [&own, &other].map(|solution| solution.response.as_ref().expect(equation));
+        let [own, other] =
+            [&own, &other].map(|solution| solution.response.as_ref().expect(equation));
         assert_eq!(own.relation, other.relation, "{equation}");
     }
 }
@@ -118,7 +141,10 @@ fn dry_friction_under_a_drive() {
     let equation = "x'' + 2*zeta*x' + alpha*sgn(x') + x = F*cos(Omega*t)";
     let solution = driven(equation, Method::Averaging, (1, 1));
     let slow = solution.modulation.as_ref().expect("slow equations");
-    assert!(same(&slow.amplitude_rate, "-zeta*a - 2*alpha/pi + F/2*sin(psi)"));
+    assert!(same(
+        &slow.amplitude_rate,
+        "-zeta*a - 2*alpha/pi + F/2*sin(psi)"
+    ));
     assert!(same(&slow.phase_rate, "sigma + F/(2*a)*cos(psi)"));
     let response = solution.response.as_ref().expect("a response");
     assert!(
@@ -128,14 +154,25 @@ fn dry_friction_under_a_drive() {
             .is_some_and(|peak| same(peak, "(F/2 - 2*alpha/pi)/zeta"))
     );
     let notes: Vec<String> = solution.validity.iter().map(ToString::to_string).collect();
-    assert!(notes.iter().any(|note| note.contains("F > 4*alpha/pi")), "{notes:?}");
+    assert!(
+        notes.iter().any(|note| note.contains("F > 4*alpha/pi")),
+        "{notes:?}"
+    );
     let states = |force: f64| {
         let values = [("zeta", 0.01), ("alpha", 0.1), ("F", force), ("Omega", 1.0)];
-        let value_of = |name: Symbol| values.iter().find(|entry| entry.0 == name.name()).map(|entry| entry.1);
+        let value_of = |name: Symbol| {
+            values
+                .iter()
+                .find(|entry| entry.0 == name.name())
+                .map(|entry| entry.1)
+        };
         let states = solution.steady_states(&value_of).into_iter();
-        states.map(|state| state.amplitude > 0.0).collect::<Vec<bool>>()
+        states
+            .map(|state| state.amplitude > 0.0)
+            .collect::<Vec<bool>>()
     };
-    // Below it there is rest alone, which is the truth where friction holds against the whole force.
+    // Below it there is rest alone, which is the truth where friction holds against the whole
+    // force.
     assert_eq!(
         [0.99, 1.01].map(|part| states(part * 0.4 / PI)),
         [vec![false], vec![true]]
@@ -148,8 +185,9 @@ fn dry_friction_under_a_drive() {
     assert_eq!(held.verdict, Verdict::Pass, "{:?}", held.steady_states);
 }
 
-/// J. P. Den Hartog, Trans. ASME 53 (1931): with r = Omega the motion that never stops has the amplitude F sqrt(V^2 - (alpha/F)^2 H^2),
-/// V = 1/(1 - r^2), H = sin(pi/r)/(r (1 + cos(pi/r))). All that is small halved, the error of first order halves.
+/// J. P. Den Hartog, Trans. ASME 53 (1931): with r = Omega the motion that never stops has the
+/// amplitude F sqrt(V^2 - (alpha/F)^2 H^2), V = 1/(1 - r^2), H = sin(pi/r)/(r (1 + cos(pi/r))). All
+/// that is small halved, the error of first order halves.
 #[test]
 fn dry_friction_under_a_drive_is_den_hartogs() {
     let equation = "x'' + alpha*sgn(x') + x = F*cos(Omega*t)";
@@ -157,13 +195,21 @@ fn dry_friction_under_a_drive_is_den_hartogs() {
     let error = |size: f64| {
         let (alpha, force, r) = (0.16 * size, 0.8 * size, 1.0 + 0.4 * size);
         let values = [("alpha", alpha), ("F", force), ("Omega", r)];
-        let value_of = |name: Symbol| values.iter().find(|entry| entry.0 == name.name()).map(|entry| entry.1);
+        let value_of = |name: Symbol| {
+            values
+                .iter()
+                .find(|entry| entry.0 == name.name())
+                .map(|entry| entry.1)
+        };
         let states = solution.steady_states(&value_of);
         let [state] = states.as_slice() else {
             panic!("{states:?}")
         };
         assert!(state.is_stable());
-        let (v, h) = (1.0 / (1.0 - r * r), (PI / r).sin() / (r * (1.0 + (PI / r).cos())));
+        let (v, h) = (
+            1.0 / (1.0 - r * r),
+            (PI / r).sin() / (r * (1.0 + (PI / r).cos())),
+        );
         let exact = force * (v * v - (alpha / force * h).powi(2)).sqrt();
         (state.amplitude / exact - 1.0).abs()
     };
@@ -174,7 +220,8 @@ fn dry_friction_under_a_drive_is_den_hartogs() {
     }
 }
 
-/// Steady motions of forces with corners and of the paper's arctangent beside the true ones, found by shooting.
+/// Steady motions of forces with corners and of the paper's arctangent beside the true ones, found
+/// by shooting.
 #[test]
 fn steady_motions_without_a_series_are_the_true_ones() {
     for (equation, at, error) in [
@@ -201,11 +248,17 @@ fn steady_motions_without_a_series_are_the_true_ones() {
     ] {
         let oscillator = Oscillator::parse(equation).expect(equation);
         let at = at.parse().expect(at);
-        let options = lindstedt::method::with_resonance_at(&oscillator, &Options::default(), &at).expect(equation);
+        let options = lindstedt::method::with_resonance_at(&oscillator, &Options::default(), &at)
+            .expect(equation);
         let solution = solve(&oscillator, &options).expect(equation);
         assert_eq!(solution.method, Method::Averaging, "{equation}");
         let judged = judge(&oscillator, &solution, &at, error).expect(equation);
-        assert_eq!(judged.verdict, Verdict::Pass, "{equation}: {:?}", judged.steady_states);
+        assert_eq!(
+            judged.verdict,
+            Verdict::Pass,
+            "{equation}: {:?}",
+            judged.steady_states
+        );
         for state in &judged.steady_states {
             assert_eq!(
                 state.true_stable,
@@ -224,7 +277,11 @@ fn drives_that_averaging_refuses_by_name() {
             Some((1, 3)),
             "at 1:3; it does at 1:1",
         ),
-        ("x'' + 2*zeta*x' + x = F*cos(Omega*t) + G*cos(2*t)", None, "G*cos(2*t)"),
+        (
+            "x'' + 2*zeta*x' + x = F*cos(Omega*t) + G*cos(2*t)",
+            None,
+            "G*cos(2*t)",
+        ),
         ("x'' + 2*zeta*x' + x = F*exp(-t)", None, "F*exp(-t)"),
         (
             "x'' + 2*zeta*x' + x = h*abs(x)*cos(Omega*t)",
@@ -239,7 +296,8 @@ fn drives_that_averaging_refuses_by_name() {
             resonance,
             ..Options::default()
         };
-        let refusal = solve(&Oscillator::parse(equation).expect(equation), &options).expect_err(equation);
+        let refusal =
+            solve(&Oscillator::parse(equation).expect(equation), &options).expect_err(equation);
         assert!(refusal.to_string().contains(words), "{equation}: {refusal}");
         assert!(refusal.help().is_some(), "{equation}");
     }

@@ -15,7 +15,8 @@ use super::{averaged, judged, same, slow};
 #[test]
 fn published_slow_equations() {
     for (equation, order, amplitude_rate, phase_rate) in [
-        // Nayfeh and Mook, section 3.3.4 and, to second order, Bogoliubov and Mitropolsky, section 1.3.
+        // Nayfeh and Mook, section 3.3.4 and, to second order, Bogoliubov and Mitropolsky,
+        // section 1.3.
         (
             "x'' - mu*(1 - x^2)*x' + x = 0",
             2,
@@ -27,11 +28,21 @@ fn published_slow_equations() {
         ("x'' + x + alpha*sgn(x') = 0", 1, "-2*alpha/pi", "1"),
         ("x'' + x + c*abs(x')*x' = 0", 1, "-4*c*a^2/(3*pi)", "1"),
         // Section 2.3.1, and the exact frequency sqrt(1 - zeta^2) of a linear motion.
-        ("x'' + x + eps*x^3 = 0", 2, "0", "1 + 3*eps*a^2/8 - 15*eps^2*a^4/256"),
+        (
+            "x'' + x + eps*x^3 = 0",
+            2,
+            "0",
+            "1 + 3*eps*a^2/8 - 15*eps^2*a^4/256",
+        ),
         ("x'' + x + eps*x^2 = 0", 2, "0", "1 - 5*eps^2*a^2/12"),
         ("x'' + 2*zeta*x' + x = 0", 2, "-zeta*a", "1 - zeta^2/2"),
         // The pendulum, where the first harmonic of the sine is a Bessel function.
-        ("x'' + 2*zeta*x' + sin(x) = 0", 1, "-zeta*a", "1/2 + J1(a)/a"),
+        (
+            "x'' + 2*zeta*x' + sin(x) = 0",
+            1,
+            "-zeta*a",
+            "1/2 + J1(a)/a",
+        ),
         (
             "phi'' + 2*zeta*phi' + (g/L)*sin(phi) = 0",
             1,
@@ -52,7 +63,11 @@ fn published_slow_equations() {
             "{equation}: {}",
             found.amplitude_rate
         );
-        assert!(same(&found.phase_rate, phase_rate), "{equation}: {}", found.phase_rate);
+        assert!(
+            same(&found.phase_rate, phase_rate),
+            "{equation}: {}",
+            found.phase_rate
+        );
     }
     // By the initial displacement it is the series of Lindstedt and Poincare.
     let options = Options {
@@ -105,8 +120,10 @@ fn projections_are_their_integrals() {
         let force: Expr = term.parse().expect(term);
         let force = CompiledFunction::new(&force, &["x".into(), "x'".into()]).expect(term);
         let eps = BTreeMap::from([("eps".into(), Expr::one())]);
-        let rate =
-            |rate: &Expr| CompiledFunction::new(&rate.substitute_all(&eps).expect(term), &["a".into()]).expect(term);
+        let rate = |rate: &Expr| {
+            CompiledFunction::new(&rate.substitute_all(&eps).expect(term), &["a".into()])
+                .expect(term)
+        };
         let (amplitude_rate, phase_rate) = (rate(&found.amplitude_rate), rate(&found.phase_rate));
         for a in [0.3, 0.8, 2.0] {
             let sum = |of: fn(f64) -> f64| -> f64 {
@@ -119,13 +136,17 @@ fn projections_are_their_integrals() {
             let expected = [sum(f64::sin) / 3.0, 1.5 + sum(f64::cos) / (3.0 * a)];
             let values = [amplitude_rate.call(&[a]), phase_rate.call(&[a])];
             for (value, expected) in values.into_iter().zip(expected) {
-                assert!((value - expected).abs() < 1e-5, "{term} at {a}: {value}, {expected}");
+                assert!(
+                    (value - expected).abs() < 1e-5,
+                    "{term} at {a}: {value}, {expected}"
+                );
             }
         }
     }
 }
 
-/// `y = a^q` is linear in `exp(t)` or in `t`: put back into `y' = q a^(q-1) a'` nothing is left, exactly.
+/// `y = a^q` is linear in `exp(t)` or in `t`: put back into `y' = q a^(q-1) a'` nothing is left,
+/// exactly.
 #[test]
 fn closed_amplitudes_solve_their_equations() {
     let (a, t) = (Symbol::new("a"), Symbol::new("t"));
@@ -149,7 +170,8 @@ fn closed_amplitudes_solve_their_equations() {
             .expect(equation);
         // q a^(q-1) a' as a polynomial in y: every power of a there is 0 or q.
         let symbol = Expr::from(a);
-        let slope = &Expr::from(q) * &symbol.integer_power(q - 1).expect("a power") * &slow.amplitude_rate;
+        let slope =
+            &Expr::from(q) * &symbol.integer_power(q - 1).expect("a power") * &slow.amplitude_rate;
         let slope = slope.expand().expect(equation);
         let power = symbol.integer_power(q).expect("a power");
         let mut in_y = Expr::zero();
@@ -161,10 +183,15 @@ fn closed_amplitudes_solve_their_equations() {
                 };
         }
         assert!(!in_y.contains(a), "{equation}: {in_y}");
-        let left = (y.differentiate(t).expect(equation) - in_y).expand().expect(equation);
+        let left = (y.differentiate(t).expect(equation) - in_y)
+            .expand()
+            .expect(equation);
         assert!(left.is_zero(), "{equation}: {left}");
         // It begins where it should.
-        let start = transient.amplitude.substitute(t, &Expr::zero()).expect(equation);
+        let start = transient
+            .amplitude
+            .substitute(t, &Expr::zero())
+            .expect(equation);
         let start = Expr::power(&start, &Expr::from(q))
             .and_then(|y| y.expand())
             .expect(equation);
@@ -213,8 +240,12 @@ fn closed_phases_solve_their_equations() {
             let amplitude = transient.amplitude.evaluate(&values).expect(equation);
             values.insert("a".into(), amplitude);
             for (slope, rate) in slopes.iter().zip([&slow.amplitude_rate, &slow.phase_rate]) {
-                let [slope, rate] = [slope, rate].map(|value| value.evaluate(&values).expect(equation));
-                assert!((slope - rate).abs() < 1e-12, "{equation} at {time}: {slope}, {rate}");
+                let [slope, rate] =
+                    [slope, rate].map(|value| value.evaluate(&values).expect(equation));
+                assert!(
+                    (slope - rate).abs() < 1e-12,
+                    "{equation} at {time}: {slope}, {rate}"
+                );
             }
         }
     }
@@ -240,13 +271,17 @@ fn errors_vanish_as_the_order_says() {
                 verdict.relative_error.expect(equation).abs()
             });
             let slope = (errors[0] / errors[1]).log2();
-            assert!(slope > least, "{equation} to order {order}: {slope}, {errors:?}");
+            assert!(
+                slope > least,
+                "{equation} to order {order}: {slope}, {errors:?}"
+            );
         }
     }
 }
 
-/// The largest deviation over times of 1/small vanishes with the power of the order (Sanders, Verhulst and Murdock, theorems 2.8.1
-/// and 2.9.2), small letters and small numbers alike; what the formula leaves of the equation is of the next order at order one.
+/// The largest deviation over times of 1/small vanishes with the power of the order (Sanders,
+/// Verhulst and Murdock, theorems 2.8.1 and 2.9.2), small letters and small numbers alike; what the
+/// formula leaves of the equation is of the next order at order one.
 #[test]
 fn slopes_of_motions_from_a_start() {
     for (equation, order, at) in [
@@ -279,7 +314,11 @@ fn coulomb_friction_is_exact_at_every_turn() {
     );
     assert_eq!(verdict.verdict, Verdict::Pass);
     // Where a size at the velocity has no power series, values alone are followed.
-    let verdict = judged("x'' + x + c*abs(x')^p*x' = 0", 1, "c = 1/20, p = 1/2, A = 1");
+    let verdict = judged(
+        "x'' + x + c*abs(x')^p*x' = 0",
+        1,
+        "c = 1/20, p = 1/2, A = 1",
+    );
     let followed = verdict.followed.expect("followed");
     assert!(
         followed.amplitude_error.is_some_and(|error| error < 1e-3),
@@ -292,11 +331,16 @@ fn coulomb_friction_is_exact_at_every_turn() {
 fn a_pendulum_decays_by_its_action() {
     let verdict = judged("x'' + 2*zeta*x' + sin(x) = 0", 1, "zeta = 1/100, A = 3/2");
     let followed = verdict.followed.clone().expect("followed");
-    let near = |value: Option<f64>, expected: f64| value.is_some_and(|value| (value - expected).abs() < 5e-3);
+    let near = |value: Option<f64>, expected: f64| {
+        value.is_some_and(|value| (value - expected).abs() < 5e-3)
+    };
     assert!(near(followed.tenth, 230.2585), "{followed:?}");
     assert!(near(followed.true_tenth, 224.2246), "{followed:?}");
     assert!(near(followed.tenth_by_action, 224.2246), "{followed:?}");
-    assert!(verdict.ranges.iter().any(|range| range.outside), "{verdict:?}");
+    assert!(
+        verdict.ranges.iter().any(|range| range.outside),
+        "{verdict:?}"
+    );
     let solution = averaged("x'' + 2*zeta*x' + sin(x) = 0", 1);
     assert!(
         solution
@@ -306,11 +350,16 @@ fn a_pendulum_decays_by_its_action() {
     );
 }
 
-/// cos a_(n+1) - cos a_n = alpha (a_n + a_(n+1)), from one turn of the simulated pendulum to the next.
+/// cos a_(n+1) - cos a_n = alpha (a_n + a_(n+1)), from one turn of the simulated pendulum to the
+/// next.
 #[test]
 fn dry_friction_takes_its_work_from_turn_to_turn() {
     let equation = "x'' + sin(x) + alpha*sgn(x') = 0";
-    let notes: Vec<String> = averaged(equation, 1).validity.iter().map(ToString::to_string).collect();
+    let notes: Vec<String> = averaged(equation, 1)
+        .validity
+        .iter()
+        .map(ToString::to_string)
+        .collect();
     assert!(
         notes
             .iter()
@@ -355,7 +404,12 @@ fn amplitudes_that_stay_have_their_stability() {
     let amplitudes: Vec<f64> = slow
         .steady
         .iter()
-        .map(|cycle| cycle.amplitude.evaluate(&BTreeMap::new()).expect("a number"))
+        .map(|cycle| {
+            cycle
+                .amplitude
+                .evaluate(&BTreeMap::new())
+                .expect("a number")
+        })
         .collect();
     let expected = [10.0 - 20.0_f64.sqrt(), 10.0 + 20.0_f64.sqrt()].map(f64::sqrt);
     assert!(
@@ -366,10 +420,18 @@ fn amplitudes_that_stay_have_their_stability() {
         "{amplitudes:?}"
     );
     let stability: Vec<String> = slow.steady.iter().map(|cycle| cycle.stability()).collect();
-    assert!(stability[0].starts_with("attracts for mu > 0") && stability[1].starts_with("attracts for mu < 0"));
+    assert!(
+        stability[0].starts_with("attracts for mu > 0")
+            && stability[1].starts_with("attracts for mu < 0")
+    );
     // Without a start the cycle is judged, with one the way to it.
     let at_cycle = judged("x'' - mu*(1 - x^2)*x' + x = 0", 2, "mu = 1/10");
-    assert!(at_cycle.followed.is_none() && at_cycle.relative_error.is_some_and(|error| error.abs() < 1e-6));
+    assert!(
+        at_cycle.followed.is_none()
+            && at_cycle
+                .relative_error
+                .is_some_and(|error| error.abs() < 1e-6)
+    );
     let transient = judged("x'' - mu*(1 - x^2)*x' + x = 0", 2, "mu = 1/10, A = 1/2");
     assert!(
         transient
@@ -378,7 +440,8 @@ fn amplitudes_that_stay_have_their_stability() {
     );
 }
 
-/// Past the radius of its series, about 1.85, the frequency of van der Pol's cycle is resummed, and the judge says why.
+/// Past the radius of its series, about 1.85, the frequency of van der Pol's cycle is resummed, and
+/// the judge says why.
 #[test]
 fn van_der_pol_beyond_the_radius_of_its_series() {
     let equation = "x'' - mu*(1 - x^2)*x' + x = 0";
@@ -388,7 +451,13 @@ fn van_der_pol_beyond_the_radius_of_its_series() {
         order: Some(8),
         ..Options::default()
     };
-    let verdict = judge(&oscillator, &solve(&oscillator, &series).expect("a series"), &at, 0.01).expect("a verdict");
+    let verdict = judge(
+        &oscillator,
+        &solve(&oscillator, &series).expect("a series"),
+        &at,
+        0.01,
+    )
+    .expect("a verdict");
     assert_eq!(verdict.verdict, Verdict::Fail);
     let said = verdict
         .ranges
@@ -412,7 +481,9 @@ fn van_der_pol_beyond_the_radius_of_its_series() {
     )
     .expect("a verdict");
     assert!(
-        verdict.relative_error.is_some_and(|error| error.abs() < 0.005),
+        verdict
+            .relative_error
+            .is_some_and(|error| error.abs() < 0.005),
         "{verdict:?}"
     );
 }
@@ -430,7 +501,8 @@ fn damped_equations_are_averaged_by_default() {
             order,
             ..Options::default()
         };
-        let solution = solve(&Oscillator::parse(equation).expect(equation), &options).expect(equation);
+        let solution =
+            solve(&Oscillator::parse(equation).expect(equation), &options).expect(equation);
         assert_eq!(solution.method, Method::Averaging, "{equation}");
         let notes: Vec<String> = solution.validity.iter().map(ToString::to_string).collect();
         assert_eq!(
@@ -452,7 +524,8 @@ fn damped_equations_are_averaged_by_default() {
             method: Some(Method::LindstedtPoincare),
             ..Options::default()
         };
-        let refusal = solve(&Oscillator::parse(equation).expect(equation), &options).expect_err(equation);
+        let refusal =
+            solve(&Oscillator::parse(equation).expect(equation), &options).expect_err(equation);
         assert_eq!(refusal.term(), Some(term));
         assert!(
             refusal
@@ -465,26 +538,44 @@ fn damped_equations_are_averaged_by_default() {
         &Oscillator::parse("x'' + x + tanh(x') = 0").expect("an equation"),
         &options,
     );
-    assert_eq!(refusal.expect_err("no closed form").term(), Some("tanh(x')"));
+    assert_eq!(
+        refusal.expect_err("no closed form").term(),
+        Some("tanh(x')")
+    );
 }
 
-/// A force with the velocity in it restores where it does at rest; what is in the way is named with the velocity in it.
+/// A force with the velocity in it restores where it does at rest; what is in the way is named with
+/// the velocity in it.
 #[test]
 fn a_force_that_the_velocity_changes_is_named() {
     for (equation, method, term) in [
-        ("x'' + x/sqrt(1 - x'^2) = 0", Method::Averaging, "x/sqrt(1 - x'^2)"),
+        (
+            "x'' + x/sqrt(1 - x'^2) = 0",
+            Method::Averaging,
+            "x/sqrt(1 - x'^2)",
+        ),
         ("x'' + x*exp(x'^2) = 0", Method::Averaging, "x*exp(x'^2)"),
-        ("x''*(1 + x'^2) + x = 0", Method::EnergyBalance, "x/(1 + x'^2)"),
-        ("x'' + x/sqrt(1 - x'^2) = 0", Method::EnergyBalance, "x/sqrt(1 - x'^2)"),
+        (
+            "x''*(1 + x'^2) + x = 0",
+            Method::EnergyBalance,
+            "x/(1 + x'^2)",
+        ),
+        (
+            "x'' + x/sqrt(1 - x'^2) = 0",
+            Method::EnergyBalance,
+            "x/sqrt(1 - x'^2)",
+        ),
     ] {
         let options = Options {
             method: Some(method),
             ..Options::default()
         };
-        let refusal = solve(&Oscillator::parse(equation).expect(equation), &options).expect_err(equation);
+        let refusal =
+            solve(&Oscillator::parse(equation).expect(equation), &options).expect_err(equation);
         assert_eq!(refusal.term(), Some(term), "{refusal}");
     }
-    // Its linear part is as small a difference as the polynomial says: x*(1 + x'^2)^2 = x + 2*x*x'^2 + x*x'^4.
+    // Its linear part is as small a difference as the polynomial says: x*(1 + x'^2)^2 = x +
+    // 2*x*x'^2 + x*x'^4.
     assert_eq!(
         slow("x'' + x*(1 + x'^2)^2 = 0", 1).phase_rate.to_string(),
         "1 + a^2/4 + a^4/16"
@@ -498,7 +589,11 @@ fn the_table_of_the_documentation_is_what_comes_out() {
     let rows: Vec<Vec<&str>> = page
         .lines()
         .filter(|line| line.starts_with("| `x''"))
-        .map(|line| line.split('|').map(|cell| cell.trim().trim_matches('`')).collect())
+        .map(|line| {
+            line.split('|')
+                .map(|cell| cell.trim().trim_matches('`'))
+                .collect()
+        })
         .filter(|row: &Vec<&str>| row.len() == 6)
         .collect();
     assert!(rows.len() >= 8, "{rows:?}");
@@ -507,12 +602,17 @@ fn the_table_of_the_documentation_is_what_comes_out() {
             panic!("{row:?}");
         };
         let slow = slow(&format!("{equation} = 0"), order.parse().expect("an order"));
-        assert_eq!(slow.amplitude_rate.to_string(), *amplitude_rate, "{equation}");
+        assert_eq!(
+            slow.amplitude_rate.to_string(),
+            *amplitude_rate,
+            "{equation}"
+        );
         assert_eq!(slow.phase_rate.to_string(), *phase_rate, "{equation}");
     }
 }
 
-/// Dry friction takes the same from every half swing, so that the true time to a tenth is that of a straight line.
+/// Dry friction takes the same from every half swing, so that the true time to a tenth is that of a
+/// straight line.
 #[test]
 fn a_tenth_is_left_at_the_time_of_a_straight_line() {
     let oscillator = Oscillator::parse("x'' + alpha*sgn(x') + x = 0").expect("an oscillator");
@@ -525,8 +625,14 @@ fn a_tenth_is_left_at_the_time_of_a_straight_line() {
     )
     .expect("a verdict");
     let followed = judged.followed.expect("a motion that was followed");
-    let (formula, truth) = (followed.tenth.expect("a time"), followed.true_tenth.expect("a time"));
-    assert!((formula - 0.9 * std::f64::consts::PI / 0.08).abs() < 1e-9, "{formula}");
+    let (formula, truth) = (
+        followed.tenth.expect("a time"),
+        followed.true_tenth.expect("a time"),
+    );
+    assert!(
+        (formula - 0.9 * std::f64::consts::PI / 0.08).abs() < 1e-9,
+        "{formula}"
+    );
     assert!((truth - formula).abs() < 1e-6, "{truth} and {formula}");
 }
 
@@ -541,7 +647,10 @@ fn a_damped_motion_has_no_law_of_order_nought() {
                 order: Some(0),
                 ..Options::default()
             };
-            assert!(solve(&oscillator, &options).is_err(), "{equation}, {method:?}");
+            assert!(
+                solve(&oscillator, &options).is_err(),
+                "{equation}, {method:?}"
+            );
         }
     }
     let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0").expect("an oscillator");
@@ -573,23 +682,38 @@ fn a_barrier_at_a_letter() {
     }
 }
 
-/// Nothing linear restores: the mean work of the damping along the true motion, here by the midpoint rule over its energy, is the rate of
-/// the amplitude, and a viscous one is 2 c/(n + 3) whatever the stiffness.
+/// Nothing linear restores: the mean work of the damping along the true motion, here by the
+/// midpoint rule over its energy, is the rate of the amplitude, and a viscous one is 2 c/(n + 3)
+/// whatever the stiffness.
 #[test]
 fn a_force_of_one_power_is_averaged_along_its_motion() {
     for (equation, n, k, damping) in [
         ("x'' + 3*x^3 + c*x' = 0", 3.0, 3.0, [0.0, 1.0]),
         ("x'' + x*abs(x)/2 + c*x' = 0", 2.0, 0.5, [0.0, 1.0]),
-        ("x'' + 2*sgn(x)*abs(x)^(1/2) + c*x' = 0", 0.5, 2.0, [0.0, 1.0]),
+        (
+            "x'' + 2*sgn(x)*abs(x)^(1/2) + c*x' = 0",
+            0.5,
+            2.0,
+            [0.0, 1.0],
+        ),
         ("x'' + x^5 + c*x'*abs(x') = 0", 5.0, 1.0, [0.0, 2.0]),
         ("x'' + 3*x^3 + c*sgn(x') = 0", 3.0, 3.0, [0.0, 0.0]),
         ("x'' + 3*x^3 + c*x^2*x'^3 = 0", 3.0, 3.0, [2.0, 3.0]),
-        ("x'' + x^3 + c*abs(x')^(1/2)*sgn(x') = 0", 3.0, 1.0, [0.0, 0.5]),
+        (
+            "x'' + x^3 + c*abs(x')^(1/2)*sgn(x') = 0",
+            3.0,
+            1.0,
+            [0.0, 0.5],
+        ),
     ] {
         let solution = averaged(equation, 1);
         let slow = solution.slow().expect(equation);
         let chi = solution.defined_values(&|_| Some(1.0)).expect(equation);
-        let chi = chi.iter().find(|(name, _)| name.name() == "chi").expect("chi").1;
+        let chi = chi
+            .iter()
+            .find(|(name, _)| name.name() == "chi")
+            .expect("chi")
+            .1;
         let (r, c): (f64, f64) = (1.3, 0.1);
         // x = r sin(u): dx/v and |x|^p |v|^q dx are smooth in u.
         let (mut time, mut work) = (0.0, 0.0);
@@ -603,9 +727,16 @@ fn a_force_of_one_power_is_averaged_along_its_motion() {
             work += c * x.powf(damping[0]) * speed.powf(damping[1]) * dx;
         }
         let expected = -chi * work / time / (k * r.powf(n));
-        let numbers = [("a", chi * r), ("c", c), ("chi", chi)].map(|(name, value)| (Symbol::new(name), value));
-        let found = slow.amplitude_rate.evaluate(&numbers.into()).expect(equation);
-        assert!((found / expected - 1.0).abs() < 1e-5, "{equation}: {found}, {expected}");
+        let numbers = [("a", chi * r), ("c", c), ("chi", chi)]
+            .map(|(name, value)| (Symbol::new(name), value));
+        let found = slow
+            .amplitude_rate
+            .evaluate(&numbers.into())
+            .expect(equation);
+        assert!(
+            (found / expected - 1.0).abs() < 1e-5,
+            "{equation}: {found}, {expected}"
+        );
         if damping == [0.0, 1.0] {
             assert!(
                 (found / (-2.0 * c * chi * r / (n + 3.0)) - 1.0).abs() < 1e-14,
@@ -621,7 +752,8 @@ fn a_force_of_one_power_is_averaged_along_its_motion() {
     }
 }
 
-/// The same against the true motion: over times of 1/small the error vanishes with its first power, and what is fed comes to its cycle.
+/// The same against the true motion: over times of 1/small the error vanishes with its first power,
+/// and what is fed comes to its cycle.
 #[test]
 fn motions_where_nothing_linear_restores() {
     for (equation, at) in [
@@ -641,7 +773,13 @@ fn motions_where_nothing_linear_restores() {
     let equation = "x'' + x^3 - mu*(1 - x^2)*x' = 0";
     let oscillator = Oscillator::parse(equation).expect(equation);
     let cycle = averaged(equation, 1).on_cycle().expect("a cycle");
-    let verdict = judge(&oscillator, &cycle, &"mu = 1/50".parse().expect("values"), 0.001).expect(equation);
+    let verdict = judge(
+        &oscillator,
+        &cycle,
+        &"mu = 1/50".parse().expect("values"),
+        0.001,
+    )
+    .expect(equation);
     assert_eq!(verdict.verdict, Verdict::Pass, "{verdict:?}");
 }
 
@@ -654,12 +792,16 @@ fn no_help_leads_in_a_circle() {
             ..Options::default()
         };
         let refused = |equation: &str| {
-            let refusal = solve(&Oscillator::parse(equation).expect(equation), &options).expect_err(equation);
+            let refusal =
+                solve(&Oscillator::parse(equation).expect(equation), &options).expect_err(equation);
             assert_eq!(refusal.term(), Some("0.1*x'"), "{refusal}");
             refusal.help().expect("help").to_string()
         };
         let help = refused("x'' + 0.1*x' + x^3 + x^5 = 0");
-        assert!(help.contains("lindstedt simulate") && help.contains("exact"), "{help}");
+        assert!(
+            help.contains("lindstedt simulate") && help.contains("exact"),
+            "{help}"
+        );
         // One power alone is averaged, as whoever asked for another method is told.
         if method == Some(Method::MultipleScales) {
             let help = refused("x'' + 0.1*x' + x^3 = 0");
@@ -673,19 +815,36 @@ fn no_help_leads_in_a_circle() {
         method: Some(Method::Exact),
         ..Options::default()
     };
-    assert!(solve(&Oscillator::parse("x'' + x^3 = 0").expect("an equation"), &undamped).is_ok());
+    assert!(
+        solve(
+            &Oscillator::parse("x'' + x^3 = 0").expect("an equation"),
+            &undamped
+        )
+        .is_ok()
+    );
 }
 
-/// The tables of `docs/averaging.md` and `docs/multiple-scales.md` on motions from a start are what comes out.
+/// The tables of `docs/averaging.md` and `docs/multiple-scales.md` on motions from a start are what
+/// comes out.
 #[test]
 fn deviations_residuals_and_slopes_of_the_documentation() {
     for (method, page) in [
-        (Method::Averaging, include_str!("../../../docs/averaging.md")),
-        (Method::MultipleScales, include_str!("../../../docs/multiple-scales.md")),
+        (
+            Method::Averaging,
+            include_str!("../../../docs/averaging.md"),
+        ),
+        (
+            Method::MultipleScales,
+            include_str!("../../../docs/multiple-scales.md"),
+        ),
     ] {
         let lines = page.lines().filter(|line| line.starts_with("| `x''"));
         let rows: Vec<Vec<&str>> = lines
-            .map(|line| line.split('|').map(|cell| cell.trim().trim_matches('`')).collect())
+            .map(|line| {
+                line.split('|')
+                    .map(|cell| cell.trim().trim_matches('`'))
+                    .collect()
+            })
             .filter(|row: &Vec<&str>| row.len() == 8)
             .collect();
         assert_eq!(rows.len(), 3, "{rows:?}");
@@ -698,7 +857,8 @@ fn deviations_residuals_and_slopes_of_the_documentation() {
                 ..Options::default()
             };
             let solution = solve(&oscillator, &options).expect(row[1]);
-            let judged = judge(&oscillator, &solution, &row[2].parse().expect(row[2]), 0.01).expect(row[1]);
+            let judged =
+                judge(&oscillator, &solution, &row[2].parse().expect(row[2]), 0.01).expect(row[1]);
             let percent = |value: Option<f64>| 100.0 * value.expect(row[1]);
             for (cell, found) in [
                 (row[4], percent(judged.max_deviation)),

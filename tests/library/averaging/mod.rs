@@ -1,8 +1,9 @@
-//! Averaging: published slow equations, projections against their integrals, closed solutions put back into their equations, decay
-//! and limit cycles against the true motion.
+//! Averaging: published slow equations, projections against their integrals, closed solutions put
+//! back into their equations, decay and limit cycles against the true motion.
 //!
-//! References: N. N. Bogoliubov, Y. A. Mitropolsky, *Asymptotic Methods in the Theory of Non-Linear Oscillations*, Gordon and
-//! Breach 1961, chapter 1; A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapters 2 and 3.
+//! References: N. N. Bogoliubov, Y. A. Mitropolsky, *Asymptotic Methods in the Theory of Non-Linear
+//! Oscillations*, Gordon and Breach 1961, chapter 1; A. H. Nayfeh, D. T. Mook, *Nonlinear
+//! Oscillations*, Wiley 1979, chapters 2 and 3.
 
 mod driven;
 mod free;

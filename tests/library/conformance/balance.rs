@@ -7,7 +7,8 @@ use lindstedt::solution::Method;
 
 use super::{by, by_options, numbers};
 
-/// The motion of the exact method is that of Runge-Kutta, and its harmonics that of many balanced ones.
+/// The motion of the exact method is that of Runge-Kutta, and its harmonics that of many balanced
+/// ones.
 #[test]
 fn harmonic_balance_converges_to_the_exact_motion() {
     for (equation, amplitude, order, tolerance) in [
@@ -30,8 +31,8 @@ fn harmonic_balance_converges_to_the_exact_motion() {
         .unwrap();
         let exact = by(equation, Method::Exact).unwrap();
         let values = numbers(&[("A", amplitude)]);
-        let [found, expected] =
-            [&balance, &exact].map(|solution| evaluate(&oscillator, solution, &values).expect(equation));
+        let [found, expected] = [&balance, &exact]
+            .map(|solution| evaluate(&oscillator, solution, &values).expect(equation));
         assert!(
             (found.frequency_squared / expected.frequency_squared - 1.0).abs() < tolerance,
             "{equation}: {} {}",
@@ -105,19 +106,23 @@ fn the_printed_balance_is_the_one_that_is_solved() {
         let mut values = numbers(&entries);
         values.insert("omega".into(), found.frequency_squared.sqrt());
         for name in &system.unknowns[1..] {
-            values.insert(*name, harmonic(name.name()[1..].parse().expect("a harmonic")));
+            values.insert(
+                *name,
+                harmonic(name.name()[1..].parse().expect("a harmonic")),
+            );
         }
         for line in &system.equations {
             let value = line.evaluate(&values).expect("a number");
-            // Newton's iteration samples the motion: at the corner of a barrier that is good to less.
+            // Newton's iteration samples the motion: at the corner of a barrier that is good to
+            // less.
             let tolerance = if equation.contains('H') { 1e-8 } else { 1e-10 };
             assert!(value.abs() < tolerance, "{equation}: {line} = {value:e}");
         }
     }
 }
 
-/// Motions about several wells: the branch from rest ends inside, and the one from large amplitudes converges to the exact
-/// motion; what is said beside it says so.
+/// Motions about several wells: the branch from rest ends inside, and the one from large amplitudes
+/// converges to the exact motion; what is said beside it says so.
 #[test]
 fn balances_about_several_wells_come_from_large_amplitudes() {
     for (equation, amplitudes, tolerance) in [
@@ -136,7 +141,9 @@ fn balances_about_several_wells_come_from_large_amplitudes() {
         let exact = by(equation, Method::Exact).unwrap();
         for amplitude in amplitudes {
             let values = numbers(&[("A", amplitude)]);
-            let expected = evaluate(&oscillator, &exact, &values).unwrap().frequency_squared;
+            let expected = evaluate(&oscillator, &exact, &values)
+                .unwrap()
+                .frequency_squared;
             let error = |order: u32| {
                 let found = evaluate(&oscillator, &by_order(order), &values).unwrap();
                 let remark = found.remark.expect("a remark");
@@ -144,13 +151,17 @@ fn balances_about_several_wells_come_from_large_amplitudes() {
                 (found.frequency_squared / expected - 1.0).abs()
             };
             let (few, many) = (error(3), error(12));
-            assert!(many < tolerance && many < few, "{equation} {amplitude}: {few} {many}");
+            assert!(
+                many < tolerance && many < few,
+                "{equation} {amplitude}: {few} {many}"
+            );
         }
     }
 }
 
-/// A single well whose force softens before it stiffens: the branch of a few harmonics from rest turns back, the one from large
-/// amplitudes is that of the power x^5, for whose motions one harmonic is known.
+/// A single well whose force softens before it stiffens: the branch of a few harmonics from rest
+/// turns back, the one from large amplitudes is that of the power x^5, for whose motions one
+/// harmonic is known.
 #[test]
 fn a_single_well_is_balanced_from_large_amplitudes_too() {
     let equation = "x'' + x + 1.34*x^2 - 0.00509*x^3 + 0.441*x^5 = 0";
@@ -165,7 +176,10 @@ fn a_single_well_is_balanced_from_large_amplitudes_too() {
     let found = evaluate(&oscillator, &solution, &values).unwrap();
     // omega^2 = 5/8 c A^4, beside which the other terms are of the order of 1/A^2.
     let power = 0.625 * 0.441 * 464.0_f64.powi(4);
-    assert!((found.frequency_squared / power - 1.0).abs() < 1e-5, "{found:?}");
+    assert!(
+        (found.frequency_squared / power - 1.0).abs() < 1e-5,
+        "{found:?}"
+    );
     assert!(
         found
             .remark
@@ -173,7 +187,8 @@ fn a_single_well_is_balanced_from_large_amplitudes_too() {
     );
 }
 
-/// Close to the edge of its well a motion may have no balance, and those about several wells are none of it.
+/// Close to the edge of its well a motion may have no balance, and those about several wells are
+/// none of it.
 #[test]
 fn balances_of_other_motions_are_not_taken() {
     let equation = "x'' + 0.206*x - 3.51*x^2 + 2.29*x^3 = 0";
@@ -199,6 +214,9 @@ fn a_balance_of_thousands_of_waves_is_refused() {
     let oscillator = Oscillator::parse(equation).unwrap();
     let solution = by(equation, Method::HarmonicBalance).unwrap();
     let refused = evaluate(&oscillator, &solution, &numbers(&[("A", 7550.0)])).unwrap_err();
-    assert!(refused.to_string().contains("changes too often"), "{refused}");
+    assert!(
+        refused.to_string().contains("changes too often"),
+        "{refused}"
+    );
     assert!(evaluate(&oscillator, &solution, &numbers(&[("A", 7.5)])).is_ok());
 }

@@ -41,7 +41,8 @@ fn the_methods_of_the_shared_integral_agree_exactly() {
         "x'' + x^3 = 0",
         "x'' + x + sgn(x)*abs(x)^(5/2) = 0",
     ] {
-        let reference = law(&by_options(equation, with_order(Method::HarmonicBalance, 1)).expect(equation));
+        let reference =
+            law(&by_options(equation, with_order(Method::HarmonicBalance, 1)).expect(equation));
         for method in shared {
             assert_eq!(
                 law(&by(equation, method).expect(equation)),
@@ -50,15 +51,23 @@ fn the_methods_of_the_shared_integral_agree_exactly() {
                 method.name()
             );
         }
-        let parameter = law(&by_options(equation, with_order(Method::ParameterExpansion, 1)).expect(equation));
+        let parameter =
+            law(&by_options(equation, with_order(Method::ParameterExpansion, 1)).expect(equation));
         assert_eq!(parameter, reference, "{equation}");
     }
-    // Where the force is a polynomial, homotopy perturbation and homotopy analysis begin there as well.
-    for equation in ["x'' + x + eps*x^3 = 0", "x'' + alpha*x + eps*x^3 + beta*x^7 = 0"] {
-        let reference = law(&by_options(equation, with_order(Method::HarmonicBalance, 1)).expect(equation));
-        let homotopy = by_options(equation, with_order(Method::HomotopyPerturbation, 1)).expect(equation);
+    // Where the force is a polynomial, homotopy perturbation and homotopy analysis begin there as
+    // well.
+    for equation in [
+        "x'' + x + eps*x^3 = 0",
+        "x'' + alpha*x + eps*x^3 + beta*x^7 = 0",
+    ] {
+        let reference =
+            law(&by_options(equation, with_order(Method::HarmonicBalance, 1)).expect(equation));
+        let homotopy =
+            by_options(equation, with_order(Method::HomotopyPerturbation, 1)).expect(equation);
         assert_eq!(law(&homotopy), reference, "{equation}");
-        let analysis = by_options(equation, with_order(Method::HomotopyAnalysis, 1)).expect(equation);
+        let analysis =
+            by_options(equation, with_order(Method::HomotopyAnalysis, 1)).expect(equation);
         let root = &analysis.definitions.last().expect("w0").meaning;
         assert_eq!(
             root.integer_power(2).unwrap().expand().unwrap(),
@@ -78,8 +87,14 @@ fn closed_forms_of_the_shared_integral() {
         ("x'' + sinh(x) = 0", "2*I1(A)/A"),
         ("x'' + x + eps*x*abs(x) = 0", "1 + 8*eps*A/(3*pi)"),
         ("x'' + sgn(x) = 0", "4/(pi*A)"),
-        ("x'' + x^(1/3) = 0", "2*Gamma(7/6)/(sqrt(pi)*Gamma(5/3)*A^(2/3))"),
-        ("x'' + x^3/(1 + x^2) = 0", "1 - 2/A^2 + 2/(A^2*sqrt(1 + A^2))"),
+        (
+            "x'' + x^(1/3) = 0",
+            "2*Gamma(7/6)/(sqrt(pi)*Gamma(5/3)*A^(2/3))",
+        ),
+        (
+            "x'' + x^3/(1 + x^2) = 0",
+            "1 - 2/A^2 + 2/(A^2*sqrt(1 + A^2))",
+        ),
     ] {
         let solution = by(equation, Method::Hamiltonian)
             .or_else(|_| by(equation, Method::IterationPerturbation))
@@ -107,11 +122,20 @@ fn barriers_by_arcs() {
     for amplitude in [0.3, 0.41, 0.9, 2.0] {
         let arc = f64::acos(f64::min(1.0, edge / amplitude));
         let integrand = |theta: f64| (amplitude * theta.cos() - edge).powi(2) * theta.cos();
-        let integral = lindstedt::numeric::ode::quadrature::integrate_smooth(integrand, 0.0, arc.max(1e-300), 1e-13)
-            .unwrap()
-            .0;
+        let integral = lindstedt::numeric::ode::quadrature::integrate_smooth(
+            integrand,
+            0.0,
+            arc.max(1e-300),
+            1e-13,
+        )
+        .unwrap()
+        .0;
         let expected = 1.0 + 4.0 * k * integral / (std::f64::consts::PI * amplitude);
-        let found = squared(equation, &solution, &[("A", amplitude), ("k", k), ("xc", edge)]);
+        let found = squared(
+            equation,
+            &solution,
+            &[("A", amplitude), ("k", k), ("xc", edge)],
+        );
         assert!(
             (found / expected - 1.0).abs() < 1e-11,
             "{amplitude}: {found} {expected}"
@@ -141,14 +165,22 @@ fn laws_derived_by_hand() {
         ("x'' + sin(x) = 0", Method::EnergyBalance, &|a| {
             4.0 * ((a / 2f64.sqrt()).cos() - a.cos()) / (a * a)
         }),
-        ("x'' + sin(x) = 0", Method::FrequencyFormula, &|a| (a / 2.0).cos()),
+        ("x'' + sin(x) = 0", Method::FrequencyFormula, &|a| {
+            (a / 2.0).cos()
+        }),
         ("x'' + sin(x) = 0", Method::AmplitudeFrequency, &|a| {
             let place = 0.75f64.sqrt() * a;
             place.sin() / place
         }),
-        ("x'' + x + x^3 = 0", Method::EnergyBalance, &|a| 1.0 + 0.75 * a * a),
-        ("x'' + x + x^3 = 0", Method::FrequencyFormula, &|a| 1.0 + 0.75 * a * a),
-        ("x'' + x + x^3 = 0", Method::AmplitudeFrequency, &|a| 1.0 + 0.75 * a * a),
+        ("x'' + x + x^3 = 0", Method::EnergyBalance, &|a| {
+            1.0 + 0.75 * a * a
+        }),
+        ("x'' + x + x^3 = 0", Method::FrequencyFormula, &|a| {
+            1.0 + 0.75 * a * a
+        }),
+        ("x'' + x + x^3 = 0", Method::AmplitudeFrequency, &|a| {
+            1.0 + 0.75 * a * a
+        }),
         ("x'' + x + x^3 = 0", Method::MaxMin, &|a| 1.0 + 0.75 * a * a),
         ("x'' + x + x^5 = 0", Method::FrequencyFormula, &|a| {
             1.0 + 5.0 * (a / 2.0).powi(4)
@@ -170,7 +202,8 @@ fn laws_derived_by_hand() {
     }
 }
 
-/// Exact frequencies in closed form against quadrature of the energy, which knows nothing of elliptic functions.
+/// Exact frequencies in closed form against quadrature of the energy, which knows nothing of
+/// elliptic functions.
 #[test]
 fn exact_frequencies() {
     let forms: [(&str, &[(&str, f64)]); 15] = [
@@ -180,7 +213,10 @@ fn exact_frequencies() {
         ("x'' + x + eps*x^3 = 0", &[("eps", 0.8)]),
         ("x'' + x + eps*x^3 = 0", &[("eps", -0.3)]),
         ("x'' + 2*x + eps*x^5 = 0", &[("eps", 0.5)]),
-        ("x'' + x + eps*x^3 + beta*x^5 = 0", &[("eps", -0.5), ("beta", 0.4)]),
+        (
+            "x'' + x + eps*x^3 + beta*x^5 = 0",
+            &[("eps", -0.5), ("beta", 0.4)],
+        ),
         ("x'' + x^3 + x^5 = 0", &[]),
         ("x'' + x + eps*x^2 = 0", &[("eps", 0.3)]),
         ("x'' + x + eps*x^2 = 0", &[("eps", -0.3)]),
@@ -205,11 +241,18 @@ fn exact_frequencies() {
             };
             let found = squared(equation, &solution, &entries).sqrt();
             let expected = match equation {
-                // Constant pulls, for which time is elementary: a quarter of the period is sqrt(2 A).
-                "x'' + sgn(x) = 0" => std::f64::consts::TAU / (4.0 * (2.0 * f64::abs(amplitude)).sqrt()),
-                _ => std::f64::consts::TAU / conservative_period(&Force::smooth(&force), 0.0, amplitude).unwrap(),
+                // Constant pulls, for which time is elementary: a quarter of the period is sqrt(2
+                // A).
+                "x'' + sgn(x) = 0" => {
+                    std::f64::consts::TAU / (4.0 * (2.0 * f64::abs(amplitude)).sqrt())
+                }
+                _ => {
+                    std::f64::consts::TAU
+                        / conservative_period(&Force::smooth(&force), 0.0, amplitude).unwrap()
+                }
             };
-            // The cube root has no smooth force at the middle: the quadrature is good to less there.
+            // The cube root has no smooth force at the middle: the quadrature is good to less
+            // there.
             let tolerance = if equation.contains("^(1/3)") || equation.contains("abs") {
                 1e-8
             } else {
@@ -230,7 +273,12 @@ fn exact_frequencies() {
         ("x'' + x*abs(x) = 0", 1.0, 0.914681356502),
         ("x'' + x^(1/3) = 0", 1.0, 1.07045051404),
     ] {
-        let found = squared(equation, &by(equation, Method::Exact).unwrap(), &[("A", amplitude)]).sqrt();
+        let found = squared(
+            equation,
+            &by(equation, Method::Exact).unwrap(),
+            &[("A", amplitude)],
+        )
+        .sqrt();
         assert!((found / value - 1.0).abs() < 1e-11, "{equation}: {found}");
     }
 }
@@ -269,7 +317,9 @@ fn the_table_of_the_pendulum() {
         ),
     ] {
         let mut values = Values::default();
-        values.insert("A".into(), amplitude.parse().unwrap()).unwrap();
+        values
+            .insert("A".into(), amplitude.parse().unwrap())
+            .unwrap();
         let table = compare(&oscillator, &values, None, 0.01).unwrap();
         for (name, printed) in errors {
             let row = table

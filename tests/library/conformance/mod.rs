@@ -1,6 +1,6 @@
-//! Every method on every oscillator of the catalogue that it claims: the error of its frequency vanishes as fast as the
-//! exact series says it must, its residual is small, its motion is that of Runge-Kutta; and what the methods share they
-//! share exactly.
+//! Every method on every oscillator of the catalogue that it claims: the error of its frequency
+//! vanishes as fast as the exact series says it must, its residual is small, its motion is that of
+//! Runge-Kutta; and what the methods share they share exactly.
 
 mod balance;
 mod laws;
@@ -61,7 +61,8 @@ fn at(solution: &Solution, size: &str) -> Values {
             "lambda" => "1/10",
             _ => "1/2",
         };
-        at.insert(name, value.parse().expect("a number")).expect("a value");
+        at.insert(name, value.parse().expect("a number"))
+            .expect("a value");
     }
     at
 }
@@ -87,7 +88,8 @@ fn every_method_on_every_entry_it_claims() {
             let Ok(solution) = by(entry.equation, method) else {
                 continue;
             };
-            // Motions that die out or are driven have no frequency to be judged by: `multiple_scales.rs` holds them.
+            // Motions that die out or are driven have no frequency to be judged by:
+            // `multiple_scales.rs` holds them.
             if let Some(slow) = &solution.modulation
                 && solution.limit_cycle.is_none()
                 && !slow.is_conservative()
@@ -95,12 +97,14 @@ fn every_method_on_every_entry_it_claims() {
                 continue;
             }
             let context = format!("{} by {}", entry.name, method.name());
-            // One term of a truly nonlinear force is as good at any amplitude as at any other: a few per cent.
+            // One term of a truly nonlinear force is as good at any amplitude as at any other: a
+            // few per cent.
             let (size, tolerance, deviation) = match is_scale_free(entry.equation) {
                 // The one-line formula was made for cubic forces, and is far off for roots.
                 true if method == Method::FrequencyFormula => ("3/4", 0.4, 2.0),
                 true => ("3/4", 0.2, 2.0),
-                // What one term leaves out of the motion is of the order of the amplitude (a drift eps*A among it).
+                // What one term leaves out of the motion is of the order of the amplitude (a drift
+                // eps*A among it).
                 false => ("1/20", 1e-2, 1e-1),
             };
             let verdict = judge(&oscillator, &solution, &at(&solution, size), tolerance)
@@ -110,7 +114,11 @@ fn every_method_on_every_entry_it_claims() {
                 verdict.max_deviation.is_some_and(|value| value < deviation),
                 "{context}: {verdict:?}"
             );
-            let residual = if is_scale_free(entry.equation) { 1.1 } else { 0.1 };
+            let residual = if is_scale_free(entry.equation) {
+                1.1
+            } else {
+                0.1
+            };
             match &verdict.followed {
                 // Not periodic: followed to a tenth of its amplitude.
                 Some(followed) => assert!(
@@ -136,11 +144,15 @@ fn every_method_on_every_entry_it_claims() {
             }
         }
     }
-    assert!(judged > 180 && slopes > 70, "{judged} answers judged, {slopes} slopes");
+    assert!(
+        judged > 180 && slopes > 70,
+        "{judged} answers judged, {slopes} slopes"
+    );
 }
 
-/// The exponent of the first term in which a law differs from the exact series: of a polynomial by subtraction, of a closed
-/// form after its own Taylor expansion, of a relation R(omega^2) = 0 by putting the exact series into it.
+/// The exponent of the first term in which a law differs from the exact series: of a polynomial by
+/// subtraction, of a closed form after its own Taylor expansion, of a relation R(omega^2) = 0 by
+/// putting the exact series into it.
 fn expected_slope(oscillator: &Oscillator, solution: &Solution) -> Option<f64> {
     const HIGHEST: u32 = 10;
     let small = solution.small_parameter;
@@ -153,7 +165,8 @@ fn expected_slope(oscillator: &Oscillator, solution: &Solution) -> Option<f64> {
     };
     let series = solve(oscillator, &options).ok()?;
     let exact = series.law.frequency_squared()?;
-    // Symbols that either answer introduced, and one half for the parameters of the shape, as in `at`.
+    // Symbols that either answer introduced, and one half for the parameters of the shape, as in
+    // `at`.
     let half = |name: &Symbol| (*name, Expr::number(ratio(1, 2)));
     let values: BTreeMap<Symbol, Expr> = oscillator
         .parameters
@@ -169,7 +182,9 @@ fn expected_slope(oscillator: &Oscillator, solution: &Solution) -> Option<f64> {
         Expr::from(law) - Expr::from(exact)
     } else if let Some(relation) = solution.law.relation() {
         let root = Expr::from(exact).sqrt().ok()?;
-        Expr::from(relation).substitute("omega".into(), &root).ok()?
+        Expr::from(relation)
+            .substitute("omega".into(), &root)
+            .ok()?
     } else {
         // Powers of A below the line are multiplied away first: 2*J1(A)/A, (cos(..) - cos(A))/A^2.
         let form = solution.law.closed_form().filter(|form| form.squared)?;
@@ -184,7 +199,11 @@ fn expected_slope(oscillator: &Oscillator, solution: &Solution) -> Option<f64> {
         .ok()?
         .substitute_all(&values)
         .ok()?;
-    let difference = difference.expand().ok()?.to_polynomial(&mut |_| None).ok()??;
+    let difference = difference
+        .expand()
+        .ok()?
+        .to_polynomial(&mut |_| None)
+        .ok()??;
     let lowest = f64::from(difference.exponent_range(small)?.0);
     (lowest <= f64::from(HIGHEST)).then_some(lowest)
 }

@@ -14,8 +14,8 @@ use lindstedt::{Oscillator, Symbol};
 
 use super::{by, by_options, numbers, squared};
 
-/// mathematics.md 1.7: homotopy analysis at hbar = -1 and homotopy perturbation share the first frequency, the first
-/// correction, and omega^2 through s^3; not more.
+/// mathematics.md 1.7: homotopy analysis at hbar = -1 and homotopy perturbation share the first
+/// frequency, the first correction, and omega^2 through s^3; not more.
 #[test]
 fn homotopy_analysis_and_homotopy_perturbation() {
     let equation = "x'' + x + eps*x^3 = 0";
@@ -40,7 +40,8 @@ fn homotopy_analysis_and_homotopy_perturbation() {
         },
     )
     .unwrap();
-    let at = |solution: &Solution, s: f64| squared(equation, solution, &[("eps", s), ("A", 1.0)]).sqrt();
+    let at =
+        |solution: &Solution, s: f64| squared(equation, solution, &[("eps", s), ("A", 1.0)]).sqrt();
     let second = analysis(2);
     let first = |s: f64| (1.0 + 0.75 * s).sqrt();
     for s in [0.1, 2.0, 50.0] {
@@ -48,7 +49,10 @@ fn homotopy_analysis_and_homotopy_perturbation() {
         assert!((at(&second, s) / by_hand - 1.0).abs() < 1e-14);
         assert!((at(&analysis(1), s) / first(s) - 1.0).abs() < 1e-14);
     }
-    assert!((at(&second, 2.0) - 1.569280).abs() < 1e-6 && (at(&perturbation, 2.0) - 1.569051).abs() < 1e-6);
+    assert!(
+        (at(&second, 2.0) - 1.569280).abs() < 1e-6
+            && (at(&perturbation, 2.0) - 1.569051).abs() < 1e-6
+    );
     // Through s^3: the difference of omega^2 falls like s^4.
     let difference = |s: f64| (at(&second, s).powi(2) - at(&perturbation, s).powi(2)).abs();
     let slope = (difference(0.04) / difference(0.02)).log2();
@@ -67,7 +71,10 @@ fn homotopy_analysis_and_homotopy_perturbation() {
         let mut values = Values::default();
         values.insert("A".into(), Expr::one()).unwrap();
         values.insert("eps".into(), Expr::from(2)).unwrap();
-        judge(&oscillator, solution, &values, 0.01).unwrap().residual.unwrap()
+        judge(&oscillator, solution, &values, 0.01)
+            .unwrap()
+            .residual
+            .unwrap()
     };
     assert!(
         residual(&free) <= residual(&second),
@@ -80,14 +87,21 @@ fn homotopy_analysis_and_homotopy_perturbation() {
     let errors: Vec<f64> = (1..=5)
         .map(|order| (at(&analysis(order), 5.0) / exact - 1.0).abs())
         .collect();
-    assert!(errors[4] < 1e-5 && errors[4] < errors[1] / 10.0, "{errors:?}");
+    assert!(
+        errors[4] < 1e-5 && errors[4] < errors[1] / 10.0,
+        "{errors:?}"
+    );
 }
 
 /// A Pade approximant re-expands to the exact series through its last coefficient.
 #[test]
 fn pade_approximants_agree_with_the_series() {
     for (equation, small, degrees) in [
-        ("x'' + x + eps*x^3 = 0", "eps", [(1, 1), (2, 1), (3, 2), (2, 3)]),
+        (
+            "x'' + x + eps*x^3 = 0",
+            "eps",
+            [(1, 1), (2, 1), (3, 2), (2, 3)],
+        ),
         ("x'' + sin(x) = 0", "A", [(1, 1), (2, 1), (3, 2), (2, 2)]),
         ("x'' + x + x^2 = 0", "A", [(2, 1), (3, 1), (2, 2), (3, 3)]),
         (
@@ -107,7 +121,8 @@ fn pade_approximants_agree_with_the_series() {
             let zero: Rational = ratio(0, 1);
             let even = small == "A" && equation.contains("sin");
             let highest = (degrees.0 + degrees.1) * if even { 2 } else { 1 };
-            let parts = lindstedt::series::taylor(value, &[(small.into(), zero)], highest).expect("a series");
+            let parts = lindstedt::series::taylor(value, &[(small.into(), zero)], highest)
+                .expect("a series");
             let law = by_options(
                 equation,
                 Options {
@@ -126,8 +141,15 @@ fn pade_approximants_agree_with_the_series() {
             }
             // A rational function of several symbols: zero where it is tried, at fractions.
             for (alpha, beta, amplitude) in [(2, 3, 1), (-1, 5, 2), (7, -2, 3)] {
-                let point = [("alpha", alpha), ("beta", beta), ("A", amplitude), ("eps", 5)];
-                let point = point.map(|(name, value)| (Symbol::new(name), Expr::from(value))).into();
+                let point = [
+                    ("alpha", alpha),
+                    ("beta", beta),
+                    ("A", amplitude),
+                    ("eps", 5),
+                ];
+                let point = point
+                    .map(|(name, value)| (Symbol::new(name), Expr::from(value)))
+                    .into();
                 let value = difference.substitute_all(&point).unwrap().expand().unwrap();
                 assert!(value.is_zero(), "{equation} {degrees:?}: {value}");
             }
@@ -137,9 +159,13 @@ fn pade_approximants_agree_with_the_series() {
     let duffing = by("x'' + x + eps*x^3 = 0", Method::Pade).unwrap();
     let exact = by("x'' + x + eps*x^3 = 0", Method::Exact).unwrap();
     for s in [0.1, 1.0, 10.0, 1000.0] {
-        let [found, expected] = [&duffing, &exact]
-            .map(|solution| squared("x'' + x + eps*x^3 = 0", solution, &[("eps", s), ("A", 1.0)]).sqrt());
-        assert!((found / expected - 1.0).abs() < 6.95e-4, "{s}: {found} {expected}");
+        let [found, expected] = [&duffing, &exact].map(|solution| {
+            squared("x'' + x + eps*x^3 = 0", solution, &[("eps", s), ("A", 1.0)]).sqrt()
+        });
+        assert!(
+            (found / expected - 1.0).abs() < 6.95e-4,
+            "{s}: {found} {expected}"
+        );
     }
     // omega^2 = 1 - 5/6 A^2 + ... has no A^1: [1/1] in A does not exist.
     let singular = Options {
@@ -162,8 +188,8 @@ fn pade_approximants_agree_with_the_series() {
     ));
 }
 
-/// P + Q f + R f^2 of a quadratic approximant begins with the power that its degrees promise, f the exact series, and the root of its
-/// formula is that series near rest.
+/// P + Q f + R f^2 of a quadratic approximant begins with the power that its degrees promise, f the
+/// exact series, and the root of its formula is that series near rest.
 #[test]
 fn hermite_pade_approximants_agree_with_the_series() {
     for (equation, small, [p, q, r]) in [
@@ -195,10 +221,15 @@ fn hermite_pade_approximants_agree_with_the_series() {
         };
         let series = by_options(equation, series).expect(equation);
         let law = Expr::from(series.law.frequency_squared().expect("a series"));
-        let at_rest = law.substitute(small.into(), &Expr::zero()).expect("a number");
+        let at_rest = law
+            .substitute(small.into(), &Expr::zero())
+            .expect("a number");
         let f = Expr::divide(&law, &at_rest).expect("no division by zero");
         let letter = |name: &str| {
-            let own = solution.definitions.iter().find(|own| own.symbol.name() == name);
+            let own = solution
+                .definitions
+                .iter()
+                .find(|own| own.symbol.name() == name);
             own.expect("a definition").meaning.clone()
         };
         let defect = &(&letter("P") + &(&letter("Q") * &f)) + &(&letter("R") * &(&f * &f));
@@ -211,18 +242,27 @@ fn hermite_pade_approximants_agree_with_the_series() {
         assert_eq!(lowest, powers as i32, "{equation}: {defect}");
         // Beside rest, where the series itself is good.
         let size = if small == "eps" { 1e-3 } else { 0.03 };
-        let values: Vec<(&str, f64)> = vec![(small, size), ("A", if small == "A" { size } else { 1.0 }), ("k", 2.0)];
+        let values: Vec<(&str, f64)> = vec![
+            (small, size),
+            ("A", if small == "A" { size } else { 1.0 }),
+            ("k", 2.0),
+        ];
         let values: Vec<(&str, f64)> = values
             .into_iter()
-            .filter(|(name, value)| (*name == small) == (*value == size) && (*name != "k" || equation.contains("k*x")))
+            .filter(|(name, value)| {
+                (*name == small) == (*value == size) && (*name != "k" || equation.contains("k*x"))
+            })
             .collect();
         let [found, expected] = [&solution, &series].map(|own| squared(equation, own, &values));
-        assert!((found / expected - 1.0).abs() < 1e-13, "{equation}: {found} {expected}");
+        assert!(
+            (found / expected - 1.0).abs() < 1e-13,
+            "{equation}: {found} {expected}"
+        );
     }
 }
 
-/// Lindstedt-Poincare at order n is the expansion of the exact frequency to order n: the elliptic law, expanded exactly by
-/// the series of K and of a power, gives the same fractions.
+/// Lindstedt-Poincare at order n is the expansion of the exact frequency to order n: the elliptic
+/// law, expanded exactly by the series of K and of a power, gives the same fractions.
 #[test]
 fn lindstedt_poincare_is_the_expansion_of_the_exact_frequency() {
     // omega = pi sqrt(1+s)/(2 K(m)) with m = s/(2(1+s)); 2K/pi = sum [binomial(2k,k)/4^k]^2 m^k.
@@ -258,10 +298,15 @@ fn lindstedt_poincare_is_the_expansion_of_the_exact_frequency() {
     assert_eq!(found.expand().unwrap(), expected);
 }
 
-/// The two conventions of the amplitude agree once one is converted into the other by the motion itself.
+/// The two conventions of the amplitude agree once one is converted into the other by the motion
+/// itself.
 #[test]
 fn amplitude_conventions_agree_after_conversion() {
-    for equation in ["x'' + x + eps*x^3 = 0", "x'' + sin(x) = 0", "x'' + x + eps*x^2 = 0"] {
+    for equation in [
+        "x'' + x + eps*x^3 = 0",
+        "x'' + sin(x) = 0",
+        "x'' + x + eps*x^2 = 0",
+    ] {
         let with = |amplitude| {
             let order = if equation.contains("eps") { 4 } else { 8 };
             let options = Options {
@@ -277,7 +322,10 @@ fn amplitude_conventions_agree_after_conversion() {
             with(AmplitudeConvention::FirstHarmonic),
         );
         let difference = |size: f64| {
-            let values = numbers(&[("a", size), ("eps", if equation.contains("eps") { size } else { 1.0 })]);
+            let values = numbers(&[
+                ("a", size),
+                ("eps", if equation.contains("eps") { size } else { 1.0 }),
+            ]);
             let value = |symbol| values.get(&symbol).copied();
             // x(0) of the motion with first harmonic a is the A of the other convention.
             let motion = first.motion(&value).unwrap();

@@ -1,4 +1,5 @@
-//! Driven motions by multiple scales: slow equations and frequency response at every resonance, steady motions beside the true ones.
+//! Driven motions by multiple scales: slow equations and frequency response at every resonance,
+//! steady motions beside the true ones.
 
 use lindstedt::exact::Polynomial;
 use lindstedt::expr::{Expr, parse_expression};
@@ -17,10 +18,12 @@ fn driven(equation: &str, resonance: (u32, u32), order: u32) -> Solution {
         resonance: Some(resonance),
         ..options(order)
     };
-    solve(&oscillator, &asked).unwrap_or_else(|refusal| panic!("{equation} at {resonance:?}: {refusal}"))
+    solve(&oscillator, &asked)
+        .unwrap_or_else(|refusal| panic!("{equation} at {resonance:?}: {refusal}"))
 }
 
-/// Nayfeh and Mook, section 4.1: equations (4.1.18), (4.1.37), (4.1.52) with their phase, and (5.7.19).
+/// Nayfeh and Mook, section 4.1: equations (4.1.18), (4.1.37), (4.1.52) with their phase, and
+/// (5.7.19).
 #[test]
 fn published_slow_equations_of_driven_motions() {
     for (equation, resonance, amplitude_rate, phase_rate) in [
@@ -60,7 +63,8 @@ fn published_slow_equations_of_driven_motions() {
             "-c*a/2 - g*Lambda/w*a*sin(psi)",
             "sigma - 2*g*Lambda/w*cos(psi)",
         ),
-        // A pendulum in the square of its amplitude, driven and shaken: equation (4.1.18) with g = -omega0^2/6, and (5.7.19) with h.
+        // A pendulum in the square of its amplitude, driven and shaken: equation (4.1.18) with g
+        // = -omega0^2/6, and (5.7.19) with h.
         (
             "x'' + c*x' + k*sin(x) = F*cos(Omega*t)",
             (1, 1),
@@ -73,7 +77,8 @@ fn published_slow_equations_of_driven_motions() {
             "-c*a/2 - h*omega0/4*a*sin(psi)",
             "sigma + omega0*a^2/8 - h*omega0/2*cos(psi)",
         ),
-        // A linear oscillator has no small letter but its damping: the amplitude is small where the drive needs it.
+        // A linear oscillator has no small letter but its damping: the amplitude is small where the
+        // drive needs it.
         (
             "x'' + c*x' + w^2*x + h*sin(x)*cos(Omega*t) = 0",
             (2, 1),
@@ -84,15 +89,22 @@ fn published_slow_equations_of_driven_motions() {
         let order = if equation.contains("sin(x)") { 2 } else { 1 };
         let solution = driven(equation, resonance, order);
         let slow = solution.modulation.as_ref().expect("slow equations");
-        for (found, expected) in [(&slow.amplitude_rate, amplitude_rate), (&slow.phase_rate, phase_rate)] {
+        for (found, expected) in [
+            (&slow.amplitude_rate, amplitude_rate),
+            (&slow.phase_rate, phase_rate),
+        ] {
             let difference = found - &parse_expression(expected).expect("an expression");
             let left = difference.expand().expect("short");
-            assert!(left.is_zero(), "{equation} at {resonance:?}: {found} is not {expected}");
+            assert!(
+                left.is_zero(),
+                "{equation} at {resonance:?}: {found} is not {expected}"
+            );
         }
     }
 }
 
-/// The frequency-response equation of the primary resonance, (4.1.21), its peak and where its branches meet.
+/// The frequency-response equation of the primary resonance, (4.1.21), its peak and where its
+/// branches meet.
 #[test]
 fn frequency_response_of_the_primary_resonance() {
     let solution = driven("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)", (1, 1), 1);
@@ -102,7 +114,9 @@ fn frequency_response_of_the_primary_resonance() {
     let peak = parse_expression("F/(2*zeta)").expect("an expression");
     assert_eq!(response.peak, Some(peak));
     // Where two branches meet the relation has a double root, and the discriminant vanishes.
-    let at: Values = "zeta = 1/100, eps = 1/10, F = 1/10".parse().expect("values");
+    let at: Values = "zeta = 1/100, eps = 1/10, F = 1/10"
+        .parse()
+        .expect("values");
     let value = |polynomial: &Polynomial, sigma: f64| {
         let value_of = |name: Symbol| {
             if name.name() == "sigma" {
@@ -129,13 +143,18 @@ fn frequency_response_of_the_primary_resonance() {
     for pair in grid.windows(2) {
         let signs = [pair[0], pair[1]].map(|omega| value(jumps, omega - 1.0) > 0.0);
         let counts = [count(pair[0]), count(pair[1])];
-        assert_eq!(signs.map(|positive| if positive { 3 } else { 1 }), counts, "{pair:?}");
+        assert_eq!(
+            signs.map(|positive| if positive { 3 } else { 1 }),
+            counts,
+            "{pair:?}"
+        );
         changes += usize::from(signs[0] != signs[1]);
     }
     assert_eq!(changes, 2, "one jump up, one jump down");
 }
 
-/// Where the wave comes an order before all else, `P^2 + Q^2 = S^2` is whole from the order on that has P and Q, and before it there is none.
+/// Where the wave comes an order before all else, `P^2 + Q^2 = S^2` is whole from the order on that
+/// has P and Q, and before it there is none.
 #[test]
 fn frequency_response_of_a_wave_that_comes_first() {
     let equation = "x'' + x'/20 + x + x^2/5 = cos(Omega*t)/5";
@@ -143,7 +162,8 @@ fn frequency_response_of_a_wave_that_comes_first() {
         resonance: Some((1, 2)),
         ..options(1)
     };
-    let refusal = solve(&Oscillator::parse(equation).expect("an oscillator"), &asked).expect_err("nothing holds it");
+    let refusal = solve(&Oscillator::parse(equation).expect("an oscillator"), &asked)
+        .expect_err("nothing holds it");
     assert!(refusal.to_string().contains("needs order 2"), "{refusal}");
     let solution = driven(equation, (1, 2), 2);
     let whole = of_text("a^2/1600 + (sigma*a + a^3/60 + 46*Lambda^2*a/375)^2 - Lambda^4/25");
@@ -250,12 +270,16 @@ fn steady_motions_are_the_true_ones() {
     ] {
         let oscillator = Oscillator::parse(equation).expect("an oscillator");
         let at: Values = at.parse().expect("values");
-        let asked = lindstedt::method::with_resonance_at(&oscillator, &options(order), &at).expect(equation);
+        let asked = lindstedt::method::with_resonance_at(&oscillator, &options(order), &at)
+            .expect(equation);
         let solution = solve(&oscillator, &asked).expect(equation);
         let judged = judge(&oscillator, &solution, &at, error).expect(equation);
         let states = &judged.steady_states;
         assert_eq!(states.len(), count, "{equation}: {states:?}");
-        let found = states.iter().filter(|judged| judged.state.is_stable()).count();
+        let found = states
+            .iter()
+            .filter(|judged| judged.state.is_stable())
+            .count();
         assert_eq!(found, stable, "{equation}: {states:?}");
         for state in states {
             assert_eq!(
@@ -272,7 +296,8 @@ fn steady_motions_are_the_true_ones() {
     }
 }
 
-/// Near the fold the search from the middle motion leads to the upper one; its own is the branch that harmonic balance follows there.
+/// Near the fold the search from the middle motion leads to the upper one; its own is the branch
+/// that harmonic balance follows there.
 #[test]
 fn a_middle_motion_has_a_truth_of_its_own() {
     let equation = "x'' + x'/10 + x + x^3/10 - F*cos(Omega*t) = 0";
@@ -317,20 +342,27 @@ fn a_middle_motion_has_a_truth_of_its_own() {
     }
 }
 
-/// All that is small made smaller together: the error of the amplitude to order n vanishes with the power n, and the table of
-/// `docs/multiple-scales.md` is what is computed.
+/// All that is small made smaller together: the error of the amplitude to order n vanishes with the
+/// power n, and the table of `docs/multiple-scales.md` is what is computed.
 #[test]
 fn slopes_of_the_error_of_driven_motions() {
     let equation = "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)";
     let oscillator = Oscillator::parse(equation).expect("an oscillator");
     let orders = [1, 2, 3].map(|order| driven(equation, (1, 1), order));
     let largest = |solution: &Solution, d: u32| {
-        let at = format!("zeta = 1/{d}, eps = 1/{d}, F = 3/{d}, Omega = {}/{d}", d + 1);
-        let judged = judge(&oscillator, solution, &at.parse().expect("values"), 0.1).expect("a verdict");
+        let at = format!(
+            "zeta = 1/{d}, eps = 1/{d}, F = 3/{d}, Omega = {}/{d}",
+            d + 1
+        );
+        let judged =
+            judge(&oscillator, solution, &at.parse().expect("values"), 0.1).expect("a verdict");
         let [state] = judged.steady_states.as_slice() else {
             panic!("{judged:?}");
         };
-        (state.state.amplitude, state.relative_error.expect("an error"))
+        (
+            state.state.amplitude,
+            state.relative_error.expect("an error"),
+        )
     };
     let page = include_str!("../../../docs/multiple-scales.md");
     let mut errors: Vec<[f64; 3]> = Vec::new();
@@ -339,11 +371,19 @@ fn slopes_of_the_error_of_driven_motions() {
         .filter(|line| line.starts_with("| ") && line.ends_with(" % |"))
     {
         let cells: Vec<&str> = line.split('|').map(str::trim).collect();
-        let number = |index: usize| cells[index].trim_end_matches(" %").parse::<f64>().expect("a number");
+        let number = |index: usize| {
+            cells[index]
+                .trim_end_matches(" %")
+                .parse::<f64>()
+                .expect("a number")
+        };
         let d = cells[1].parse().expect("a whole number");
         let found = orders.each_ref().map(|solution| largest(solution, d));
         for (k, (amplitude, error)) in found.iter().enumerate() {
-            assert!((amplitude - number(2 * k + 2)).abs() < 6e-5, "{line}: {amplitude}");
+            assert!(
+                (amplitude - number(2 * k + 2)).abs() < 6e-5,
+                "{line}: {amplitude}"
+            );
             let digits = cells[2 * k + 3]
                 .trim_end_matches(" %")
                 .split('.')
@@ -369,7 +409,8 @@ fn slopes_of_the_error_of_driven_motions() {
     }
 }
 
-/// The same at the other resonances of a cubic force, a drive far from resonance held as it is: stable and unstable motions alike.
+/// The same at the other resonances of a cubic force, a drive far from resonance held as it is:
+/// stable and unstable motions alike.
 #[test]
 fn slopes_of_the_error_at_every_resonance() {
     let forced = "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)";
@@ -443,7 +484,11 @@ fn slopes_of_the_error_at_every_resonance() {
                         judged.relative_error.expect(equation).abs()
                     })
                     .collect();
-                assert_eq!(errors.len(), count, "{equation} to order {order}: {judged:?}");
+                assert_eq!(
+                    errors.len(),
+                    count,
+                    "{equation} to order {order}: {judged:?}"
+                );
                 errors
             });
             for (before, after) in errors[0].iter().zip(&errors[1]) {
@@ -457,13 +502,22 @@ fn slopes_of_the_error_at_every_resonance() {
     }
 }
 
-/// Where nothing drives, the slow equations of a driven motion are those of the free one, seen from the drive: psi' = Omega - theta'.
+/// Where nothing drives, the slow equations of a driven motion are those of the free one, seen from
+/// the drive: psi' = Omega - theta'.
 #[test]
 fn without_a_drive_the_motion_is_free() {
     let free = derive("x'' + 2*zeta*x' + x + eps*(x^2 + x^3) = 0", 3);
-    let driven = driven("x'' + 2*zeta*x' + x + eps*(x^2 + x^3) = F*cos(Omega*t)", (1, 1), 3);
-    let [free, driven] = [&free, &driven].map(|solution| solution.modulation.as_ref().expect("slow equations"));
-    let still = |rate: &Expr| rate.substitute(Symbol::new("F"), &Expr::zero()).expect("a rate");
+    let driven = driven(
+        "x'' + 2*zeta*x' + x + eps*(x^2 + x^3) = F*cos(Omega*t)",
+        (1, 1),
+        3,
+    );
+    let [free, driven] =
+        [&free, &driven].map(|solution| solution.modulation.as_ref().expect("slow equations"));
+    let still = |rate: &Expr| {
+        rate.substitute(Symbol::new("F"), &Expr::zero())
+            .expect("a rate")
+    };
     let turning = &(&Expr::symbol("sigma") + &Expr::one()) - &still(&driven.phase_rate);
     for (one, other) in [
         (free.amplitude_rate.clone(), still(&driven.amplitude_rate)),
@@ -474,9 +528,10 @@ fn without_a_drive_the_motion_is_free() {
     }
 }
 
-/// What first order says nothing about is found by the second: the second tongue of Mathieu's equation, whose edges are known
-/// (C. M. Bender, S. A. Orszag, *Advanced Mathematical
-/// Methods for Scientists and Engineers*, McGraw-Hill 1978, section 11.4: delta = 1 - eps^2/12 and 1 + 5 eps^2/12), and the motions that a cubic force holds there.
+/// What first order says nothing about is found by the second: the second tongue of Mathieu's
+/// equation, whose edges are known (C. M. Bender, S. A. Orszag, *Advanced Mathematical Methods for
+/// Scientists and Engineers*, McGraw-Hill 1978, section 11.4: delta = 1 - eps^2/12 and 1 + 5
+/// eps^2/12), and the motions that a cubic force holds there.
 #[test]
 fn the_second_tongue_needs_the_second_order() {
     for method in [Method::MultipleScales, Method::Averaging] {
@@ -504,7 +559,8 @@ fn the_second_tongue_needs_the_second_order() {
         for eps in [0.1, 0.05] {
             for part in [-1.0 / 12.0, 5.0 / 12.0] {
                 let edge = 1.0 + part * eps * eps;
-                let [below, above] = [-1.0, 1.0].map(|side| value(eps, edge + side * 0.5 * eps.powi(3)));
+                let [below, above] =
+                    [-1.0, 1.0].map(|side| value(eps, edge + side * 0.5 * eps.powi(3)));
                 assert!(
                     below * above < 0.0,
                     "{method:?}, eps = {eps}: {below}, {above} beside {edge}"
@@ -523,8 +579,12 @@ fn the_second_tongue_needs_the_second_order() {
                 0.5 / square,
                 1.0 + 0.025 / square
             );
-            let judged = judge(&oscillator, &solution, &at.parse().expect("values"), 0.1).expect("a verdict");
-            let stable = judged.steady_states.iter().filter(|judged| judged.state.is_stable());
+            let judged = judge(&oscillator, &solution, &at.parse().expect("values"), 0.1)
+                .expect("a verdict");
+            let stable = judged
+                .steady_states
+                .iter()
+                .filter(|judged| judged.state.is_stable());
             let errors: Vec<f64> = stable.filter_map(|judged| judged.relative_error).collect();
             // x(t) and -x(t) both.
             assert_eq!(errors.len(), 2, "{judged:?}");
@@ -550,7 +610,10 @@ fn drives_that_are_refused_by_name() {
         ("x'' + t*x = 0", "t*x"),
         ("x'' + x = exp(-t)", "exp(-t)"),
         ("x'' + x + x^3 = cos(t)^2", "cos(t)^2"),
-        ("x'' + x + x^3 = cos(2*t) + cos(sqrt(3)*t)", "cos(sqrt(3)*t)"),
+        (
+            "x'' + x + x^3 = cos(2*t) + cos(sqrt(3)*t)",
+            "cos(sqrt(3)*t)",
+        ),
     ] {
         let refusal = refused(equation);
         assert_eq!(refusal.term(), Some(term), "{equation}: {refusal}");
@@ -563,11 +626,16 @@ fn drives_that_are_refused_by_name() {
         ..options(1)
     };
     let others = vec![(1, 1), (3, 1), (1, 3)];
-    let expected = Unsuited::NoResonance { asked: (2, 1), others }.to(Method::MultipleScales);
+    let expected = Unsuited::NoResonance {
+        asked: (2, 1),
+        others,
+    }
+    .to(Method::MultipleScales);
     assert_eq!(solve(&oscillator, &asked), Err(expected));
 }
 
-/// What is small may stand in the equation as one letter, as several or as numbers: the motions at the same numbers are the same.
+/// What is small may stand in the equation as one letter, as several or as numbers: the motions at
+/// the same numbers are the same.
 #[test]
 fn a_motion_does_not_depend_on_how_the_small_terms_are_spelt() {
     let spellings = [
@@ -618,7 +686,8 @@ fn a_motion_does_not_depend_on_how_the_small_terms_are_spelt() {
     }
 }
 
-/// The phase of a drive, and two waves of one frequency, are folded in: amplitudes do not know where time begins, motions do.
+/// The phase of a drive, and two waves of one frequency, are folded in: amplitudes do not know
+/// where time begins, motions do.
 #[test]
 fn phases_of_a_drive() {
     for (equation, at, error, deviation) in [
@@ -655,8 +724,15 @@ fn phases_of_a_drive() {
     ] {
         let oscillator = Oscillator::parse(equation).expect(equation);
         let at: Values = at.parse().expect("values");
-        let asked = lindstedt::method::with_resonance_at(&oscillator, &options(1), &at).expect(equation);
-        let judged = judge(&oscillator, &solve(&oscillator, &asked).expect(equation), &at, error).expect(equation);
+        let asked =
+            lindstedt::method::with_resonance_at(&oscillator, &options(1), &at).expect(equation);
+        let judged = judge(
+            &oscillator,
+            &solve(&oscillator, &asked).expect(equation),
+            &at,
+            error,
+        )
+        .expect(equation);
         assert_eq!(
             judged.verdict,
             lindstedt::Verdict::Pass,
@@ -671,7 +747,8 @@ fn phases_of_a_drive() {
     }
 }
 
-/// A drive about an equilibrium that is not zero: a fraction, a letter's root, one that a drive in a coefficient shakes directly.
+/// A drive about an equilibrium that is not zero: a fraction, a letter's root, one that a drive in
+/// a coefficient shakes directly.
 #[test]
 fn drives_about_an_equilibrium() {
     for (equation, about, at, tolerance) in [
@@ -714,15 +791,31 @@ fn drives_about_an_equilibrium() {
     }
 }
 
-/// The verdict on a steady motion measures the order of its error and what it leaves of the equation, letters and numbers alike, a drive
-/// far from resonance, in a coefficient, about an equilibrium that is not zero; in the amplitude the order counts its powers.
+/// The verdict on a steady motion measures the order of its error and what it leaves of the
+/// equation, letters and numbers alike, a drive far from resonance, in a coefficient, about an
+/// equilibrium that is not zero; in the amplitude the order counts its powers.
 #[test]
 fn verdicts_measure_the_order_of_steady_motions() {
     let forced = "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)";
     for (equation, order, at, slope) in [
-        (forced, 1, "zeta = 1/40, eps = 1/40, F = 3/40, Omega = 41/40", 1.0),
-        (forced, 3, "zeta = 1/40, eps = 1/40, F = 3/40, Omega = 41/40", 3.0),
-        (forced, 2, "zeta = 1/500, eps = 1/100, F = 1, Omega = 17/50", 2.0),
+        (
+            forced,
+            1,
+            "zeta = 1/40, eps = 1/40, F = 3/40, Omega = 41/40",
+            1.0,
+        ),
+        (
+            forced,
+            3,
+            "zeta = 1/40, eps = 1/40, F = 3/40, Omega = 41/40",
+            3.0,
+        ),
+        (
+            forced,
+            2,
+            "zeta = 1/500, eps = 1/100, F = 1, Omega = 17/50",
+            2.0,
+        ),
         ("x'' + x'/20 + x + x^3/40 = 3*cos(41*t/40)/40", 4, "", 4.0),
         ("x'' + x'/20 + x + x^3/40 = 3*cos(41*t/40)/40", 6, "", 6.0),
         (
@@ -731,11 +824,31 @@ fn verdicts_measure_the_order_of_steady_motions() {
             "zeta = 1/400, h = 1/40, eps = 1/40, Omega = 161/80",
             2.0,
         ),
-        ("x'' + x'/50 + x + x^2/10 - 1 = cos(11*t/10)/200", 4, "", 4.0),
+        (
+            "x'' + x'/50 + x + x^2/10 - 1 = cos(11*t/10)/200",
+            4,
+            "",
+            4.0,
+        ),
         // A pendulum whose support is shaken upwards, sideways, and far from resonance.
-        ("x'' + x'/100 + (1 + cos(199*t/100)/20)*sin(x) = 0", 2, "", 2.0),
-        ("x'' + x'/100 + (1 + cos(199*t/100)/20)*sin(x) = 0", 4, "", 4.0),
-        ("x'' + x'/100 + (1 + cos(199*t/100)/20)*sin(x) = 0", 6, "", 6.0),
+        (
+            "x'' + x'/100 + (1 + cos(199*t/100)/20)*sin(x) = 0",
+            2,
+            "",
+            2.0,
+        ),
+        (
+            "x'' + x'/100 + (1 + cos(199*t/100)/20)*sin(x) = 0",
+            4,
+            "",
+            4.0,
+        ),
+        (
+            "x'' + x'/100 + (1 + cos(199*t/100)/20)*sin(x) = 0",
+            6,
+            "",
+            6.0,
+        ),
         ("x'' + x'/20 + sin(x) = cos(x)*cos(39*t/40)/40", 2, "", 2.0),
         ("x'' + x'/20 + sin(x) = cos(x)*cos(39*t/40)/40", 4, "", 4.0),
         ("x'' + x'/500 + sin(x) = cos(x)*cos(33*t/100)/5", 2, "", 2.0),
@@ -743,8 +856,15 @@ fn verdicts_measure_the_order_of_steady_motions() {
     ] {
         let oscillator = Oscillator::parse(equation).expect(equation);
         let at: Values = at.parse().unwrap_or_default();
-        let asked = lindstedt::method::with_resonance_at(&oscillator, &options(order), &at).expect(equation);
-        let judged = judge(&oscillator, &solve(&oscillator, &asked).expect(equation), &at, 0.1).expect(equation);
+        let asked = lindstedt::method::with_resonance_at(&oscillator, &options(order), &at)
+            .expect(equation);
+        let judged = judge(
+            &oscillator,
+            &solve(&oscillator, &asked).expect(equation),
+            &at,
+            0.1,
+        )
+        .expect(equation);
         let measured = judged.slope.expect(equation);
         assert!(
             (measured - slope).abs() < 0.3,
@@ -761,23 +881,35 @@ fn verdicts_measure_the_order_of_steady_motions() {
 /// A frequency far from every resonance has no formula of one.
 #[test]
 fn a_drive_far_from_resonance_is_refused() {
-    let oscillator = Oscillator::parse("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)").expect("an oscillator");
-    let at: Values = "zeta = 1/100, eps = 1/20, F = 1, Omega = 7".parse().expect("values");
-    let refusal = lindstedt::method::with_resonance_at(&oscillator, &options(1), &at).expect_err("far");
+    let oscillator =
+        Oscillator::parse("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)").expect("an oscillator");
+    let at: Values = "zeta = 1/100, eps = 1/20, F = 1, Omega = 7"
+        .parse()
+        .expect("values");
+    let refusal =
+        lindstedt::method::with_resonance_at(&oscillator, &options(1), &at).expect_err("far");
     assert!(
-        refusal.to_string().contains("Omega : omega0 = 7 is far from 3:1"),
+        refusal
+            .to_string()
+            .contains("Omega : omega0 = 7 is far from 3:1"),
         "{refusal}"
     );
-    assert!(refusal.help().is_some_and(|help| help.to_string().contains("response")));
+    assert!(
+        refusal
+            .help()
+            .is_some_and(|help| help.to_string().contains("response"))
+    );
 }
 
-/// Driven motions are compared by the amplitude of their largest stable steady motion: both methods, both orders.
+/// Driven motions are compared by the amplitude of their largest stable steady motion: both
+/// methods, both orders.
 #[test]
 fn driven_motions_are_compared() {
     let compared = |equation: &str, at: &str| {
         let oscillator = Oscillator::parse(equation).expect(equation);
         let at: Values = at.parse().expect("values");
-        let table = lindstedt::verify::comparison::compare(&oscillator, &at, None, 0.01).expect(equation);
+        let table =
+            lindstedt::verify::comparison::compare(&oscillator, &at, None, 0.01).expect(equation);
         let rows = table.rows.iter();
         rows.map(|row| {
             (
@@ -805,7 +937,10 @@ fn driven_motions_are_compared() {
         "{rows:?}"
     );
     let friction = "x'' + 2*zeta*x' + alpha*sgn(x') + x = F*cos(Omega*t)";
-    let rows = compared(friction, "zeta = 1/200, alpha = 1/200, F = 1/40, Omega = 201/200");
+    let rows = compared(
+        friction,
+        "zeta = 1/200, alpha = 1/200, F = 1/40, Omega = 201/200",
+    );
     assert!(
         matches!(rows.as_slice(), [(Method::Averaging, 1, error)] if *error < 5e-3),
         "{rows:?}"

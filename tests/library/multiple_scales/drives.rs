@@ -1,4 +1,5 @@
-//! Several drives, a base that moves, and forces whose first power is high: steady motions against the true ones, found by shooting.
+//! Several drives, a base that moves, and forces whose first power is high: steady motions against
+//! the true ones, found by shooting.
 
 use lindstedt::expr::Expr;
 use lindstedt::method::{Options, solve};
@@ -7,7 +8,11 @@ use lindstedt::verify::Verification;
 use lindstedt::verify::VerificationError;
 use lindstedt::{Oscillator, Symbol, Values, Verdict, judge};
 
-fn derived(equation: &str, resonance: Option<(u32, u32)>, order: Option<u32>) -> (Oscillator, Solution) {
+fn derived(
+    equation: &str,
+    resonance: Option<(u32, u32)>,
+    order: Option<u32>,
+) -> (Oscillator, Solution) {
     let oscillator = Oscillator::parse(equation).expect(equation);
     let options = Options {
         method: Some(Method::MultipleScales),
@@ -15,7 +20,8 @@ fn derived(equation: &str, resonance: Option<(u32, u32)>, order: Option<u32>) ->
         resonance,
         ..Options::default()
     };
-    let solution = solve(&oscillator, &options).unwrap_or_else(|refusal| panic!("{equation}: {refusal}"));
+    let solution =
+        solve(&oscillator, &options).unwrap_or_else(|refusal| panic!("{equation}: {refusal}"));
     (oscillator, solution)
 }
 
@@ -25,13 +31,17 @@ fn judged(equation: &str, resonance: (u32, u32), order: u32, at: &str) -> Verifi
     judge(&oscillator, &solution, &at, 0.05).unwrap_or_else(|error| panic!("{equation}: {error}"))
 }
 
-/// Everything that moves has its true motion near by, as stable, and the second order is nearer to the largest than the first.
+/// Everything that moves has its true motion near by, as stable, and the second order is nearer to
+/// the largest than the first.
 fn are_the_true_ones(equation: &str, resonance: (u32, u32), at: &str, within: f64) {
     let orders = [1, 2].map(|order| judged(equation, resonance, order, at));
     for judged in &orders {
         assert!(!judged.steady_states.is_empty(), "{equation} {at}");
         for state in &judged.steady_states {
-            let near = state.state.amplitude == 0.0 || state.relative_error.is_some_and(|error| error.abs() < within);
+            let near = state.state.amplitude == 0.0
+                || state
+                    .relative_error
+                    .is_some_and(|error| error.abs() < within);
             assert!(
                 near && state.true_stable == Some(state.state.is_stable()),
                 "{equation} {at}: {state:?}"
@@ -81,13 +91,19 @@ fn slow_equations_of_both_drives_are_their_sum() {
         solution.modulation.expect("slow equations").amplitude_rate
     };
     let both = rates("x'' + (1 + h*cos(2*w*t))*x + eps*x^3 = F*cos(w*t)", (1, 1));
-    let expected: Expr = "F*sin(psi)/2 - h*a*sin(2*psi)/4".parse().expect("an expression");
-    assert!((&both - &expected).expand().expect("short").is_zero(), "{both}");
+    let expected: Expr = "F*sin(psi)/2 - h*a*sin(2*psi)/4"
+        .parse()
+        .expect("an expression");
+    assert!(
+        (&both - &expected).expand().expect("short").is_zero(),
+        "{both}"
+    );
 }
 
 #[test]
 fn frequencies_without_a_ratio_are_refused_by_name() {
-    let oscillator = Oscillator::parse("x'' + x + x^3 = F*cos(W*t) + G*cos(V*t)").expect("an oscillator");
+    let oscillator =
+        Oscillator::parse("x'' + x + x^3 = F*cos(W*t) + G*cos(V*t)").expect("an oscillator");
     let refusal = solve(&oscillator, &Options::default()).expect_err("no ratio");
     assert!(
         refusal.term().is_some_and(|term| term.contains("cos(V*t)")),
@@ -95,11 +111,15 @@ fn frequencies_without_a_ratio_are_refused_by_name() {
     );
 }
 
-/// A base that moves: the answer is in the relative coordinate and says so, and the true motion of that agrees.
+/// A base that moves: the answer is in the relative coordinate and says so, and the true motion of
+/// that agrees.
 #[test]
 fn a_base_that_moves_is_left_out_of_the_force() {
     for (equation, at) in [
-        ("x'' + x + eps*(x - Y*sin(w*t))^3 = 0", "eps = 1/10, Y = 1/5, w = 6/5"),
+        (
+            "x'' + x + eps*(x - Y*sin(w*t))^3 = 0",
+            "eps = 1/10, Y = 1/5, w = 6/5",
+        ),
         (
             "x'' + 2*zeta*(x' - Y*w*cos(w*t)) + (x - Y*sin(w*t)) + eps*(x - Y*sin(w*t))^3 = 0",
             "zeta = 1/50, eps = 1/20, Y = 1/50, w = 101/100",
@@ -126,7 +146,8 @@ fn a_base_that_moves_is_left_out_of_the_force() {
     }
 }
 
-/// Seen from one of two bases the other moves, and the first again as seen from that: there is an end to it.
+/// Seen from one of two bases the other moves, and the first again as seen from that: there is an
+/// end to it.
 #[test]
 fn bases_that_move_differently_are_refused() {
     for equation in [
@@ -150,8 +171,8 @@ fn bases_that_move_differently_are_refused() {
     }
 }
 
-/// Beside a fifth power damping, detuning and drive count as the fourth power of the amplitude: there are steady motions, and their error
-/// vanishes as the next power does.
+/// Beside a fifth power damping, detuning and drive count as the fourth power of the amplitude:
+/// there are steady motions, and their error vanishes as the next power does.
 #[test]
 fn a_fifth_power_balances_at_its_own_order() {
     let equation = "x'' + x'/50 + x + x^5/10 = cos(Omega*t)/20";
@@ -168,7 +189,8 @@ fn a_fifth_power_balances_at_its_own_order() {
 /// To first order in the amplitude nothing holds a damped motion: the order that does is named.
 #[test]
 fn an_order_at_which_nothing_holds_the_motion_is_refused() {
-    let oscillator = Oscillator::parse("x'' + 2*zeta*x' + x + b*x^2 = F*cos(Omega*t)").expect("an oscillator");
+    let oscillator =
+        Oscillator::parse("x'' + 2*zeta*x' + x + b*x^2 = F*cos(Omega*t)").expect("an oscillator");
     let options = Options {
         method: Some(Method::MultipleScales),
         small: Some("A".to_owned()),
@@ -183,12 +205,21 @@ fn an_order_at_which_nothing_holds_the_motion_is_refused() {
         ..options
     };
     let solution = solve(&oscillator, &held).expect("an answer");
-    assert!(solution.response.is_some_and(|response| response.relation.is_some()));
+    assert!(
+        solution
+            .response
+            .is_some_and(|response| response.relation.is_some())
+    );
 }
 
-/// The amplitude with which the true motion swings at a frequency, once what was free has died out, by Runge-Kutta and the mean of the
-/// motion beside that wave under a window that lets no other frequency through.
-fn true_line(force: impl Fn(f64, f64, f64) -> f64, frequency: f64, [dies_out, window]: [f64; 2]) -> f64 {
+/// The amplitude with which the true motion swings at a frequency, once what was free has died out,
+/// by Runge-Kutta and the mean of the motion beside that wave under a window that lets no other
+/// frequency through.
+fn true_line(
+    force: impl Fn(f64, f64, f64) -> f64,
+    frequency: f64,
+    [dies_out, window]: [f64; 2],
+) -> f64 {
     const STEP: f64 = 0.02;
     let (mut t, mut x, mut v) = (0.0, 0.0, 0.0);
     let (mut cosine, mut sine, mut whole) = (0.0, 0.0, 0.0);
@@ -202,7 +233,9 @@ fn true_line(force: impl Fn(f64, f64, f64) -> f64, frequency: f64, [dies_out, wi
         v += STEP / 6.0 * (a.1 + 2.0 * b.1 + 2.0 * c.1 + d.1);
         t += STEP;
         if t > dies_out {
-            let weight = (std::f64::consts::PI * (t - dies_out) / window).sin().powi(4);
+            let weight = (std::f64::consts::PI * (t - dies_out) / window)
+                .sin()
+                .powi(4);
             cosine += weight * x * (frequency * t).cos();
             sine += weight * x * (frequency * t).sin();
             whole += weight;
@@ -211,8 +244,9 @@ fn true_line(force: impl Fn(f64, f64, f64) -> f64, frequency: f64, [dies_out, wi
     2.0 * (cosine * cosine + sine * sine).sqrt() / whole
 }
 
-/// Drives of unrelated frequencies: beside the one near the linear frequency the others shift that by 3*eps*Lambda^2 each, as Nayfeh and
-/// Mook have it, and the steady motion is the true one up to a part that halves with all that is small.
+/// Drives of unrelated frequencies: beside the one near the linear frequency the others shift that
+/// by 3*eps*Lambda^2 each, as Nayfeh and Mook have it, and the steady motion is the true one up to
+/// a part that halves with all that is small.
 #[test]
 fn drives_without_a_ratio_act_together() {
     let duffing = "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(W*t) + G*cos(V*t)";
@@ -221,16 +255,25 @@ fn drives_without_a_ratio_act_together() {
     let resonance = slow.resonance.as_ref().expect("a drive");
     let near = resonance.driving_frequency.to_string();
     assert!(["V", "W"].contains(&near.as_str()), "{near}");
-    let (weak, strong, far) = if near == "W" { ("F", "G", "V") } else { ("G", "F", "W") };
+    let (weak, strong, far) = if near == "W" {
+        ("F", "G", "V")
+    } else {
+        ("G", "F", "W")
+    };
     let rate: Expr = format!("sigma - 3*eps*a^2/8 - 3*eps*Lambda^2 + {weak}*cos(psi)/(2*a)")
         .parse()
         .expect("a rate");
     assert!(
-        (&slow.phase_rate - &rate).expand().expect("short").is_zero(),
+        (&slow.phase_rate - &rate)
+            .expand()
+            .expect("short")
+            .is_zero(),
         "{}",
         slow.phase_rate
     );
-    let size: Expr = format!("{strong}/(2*(1 - {far}^2))").parse().expect("a size");
+    let size: Expr = format!("{strong}/(2*(1 - {far}^2))")
+        .parse()
+        .expect("a size");
     let lambda = solution
         .definitions
         .iter()
@@ -277,7 +320,8 @@ fn drives_without_a_ratio_act_together() {
     );
 }
 
-/// Of drives with numbers the nearest to the linear frequency is the one in resonance; what is missing is refused.
+/// Of drives with numbers the nearest to the linear frequency is the one in resonance; what is
+/// missing is refused.
 #[test]
 fn drives_without_a_ratio_say_which_is_near() {
     let near = |equation: &str| {
@@ -300,7 +344,8 @@ fn drives_without_a_ratio_say_which_is_near() {
         one("Z", 1)
     );
     assert_eq!(
-        near("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(U*t) + G*cos(V*t) + H1*sin(W*t)").map(|found| found.1),
+        near("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(U*t) + G*cos(V*t) + H1*sin(W*t)")
+            .map(|found| found.1),
         Some(2)
     );
     for equation in [
@@ -310,7 +355,9 @@ fn drives_without_a_ratio_say_which_is_near() {
         "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(sqrt(2)*t) + G*cos(3*t)",
     ] {
         let oscillator = Oscillator::parse(equation).expect(equation);
-        let refusal = solve(&oscillator, &Options::default()).expect_err(equation).to_string();
+        let refusal = solve(&oscillator, &Options::default())
+            .expect_err(equation)
+            .to_string();
         assert!(
             refusal.contains("drives whose frequencies are small multiples of one"),
             "{refusal}"

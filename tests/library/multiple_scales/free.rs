@@ -1,4 +1,5 @@
-//! Free motions by multiple scales: slow equations, the motion put back, errors that vanish as their order says, decay from a start.
+//! Free motions by multiple scales: slow equations, the motion put back, errors that vanish as
+//! their order says, decay from a start.
 
 use lindstedt::exact::{POLYNOMIALS, Polynomial, ratio};
 use lindstedt::expr::parse_expression;
@@ -26,7 +27,12 @@ fn published_slow_equations() {
             "1 - mu^2*(1/8 - a^2/8 + 7*a^4/256)",
         ),
         ("x'' + 2*zeta*x' + x = 0", 3, "-zeta*a", "1 - zeta^2/2"),
-        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 1, "-zeta*a", "1 + 3*eps*a^2/8"),
+        (
+            "x'' + 2*zeta*x' + x + eps*x^3 = 0",
+            1,
+            "-zeta*a",
+            "1 + 3*eps*a^2/8",
+        ),
         ("x'' + x + eps*x'^3 = 0", 1, "-3*eps*a^3/8", "1"),
         ("x'' + x + eps*x^2 = 0", 2, "0", "1 - 5*eps^2*a^2/12"),
     ] {
@@ -35,14 +41,19 @@ fn published_slow_equations() {
     }
 }
 
-/// The motion put back into its equation, by the algebra of series alone: time derivatives are `a' d/da + psi' d/dtheta`.
+/// The motion put back into its equation, by the algebra of series alone: time derivatives are
+/// `a' d/da + psi' d/dtheta`.
 #[test]
 fn what_is_left_of_the_equation_is_of_the_next_order() {
     for (equation, small, order) in [
         ("x'' + x + eps*x^3 = 0", "eps", 3),
         ("x'' + x + eps*(alpha*x^2 + beta*x^3) = 0", "eps", 3),
         ("x'' + eps*x' + x + eps*x^3 + eps*x^2*x'^3 = 0", "eps", 3),
-        ("x'' + x + eps*x^2 + eps^2*x'*x^2 + 3*eps^3*x^5 = 0", "eps", 3),
+        (
+            "x'' + x + eps*x^2 + eps^2*x'*x^2 + 3*eps^3*x^5 = 0",
+            "eps",
+            3,
+        ),
         ("x'' + x + eps*x*x'^2 - eps^2*x' = 0", "eps", 2),
         ("x'' + 4*x + eps*(1 + x)*x'^2 = 0", "eps", 3),
     ] {
@@ -55,11 +66,17 @@ fn what_is_left_of_the_equation_is_of_the_next_order() {
             })
         };
         let highest = order as i32;
-        let constant = |polynomial: &Polynomial| FourierSeries::constant(POLYNOMIALS, polynomial.clone());
+        let constant =
+            |polynomial: &Polynomial| FourierSeries::constant(POLYNOMIALS, polynomial.clone());
         let rate = |series: &FourierSeries<_>| {
-            let slope = series.map(POLYNOMIALS, |coefficient: &Polynomial, _| coefficient.slope(a));
+            let slope = series.map(POLYNOMIALS, |coefficient: &Polynomial, _| {
+                coefficient.slope(a)
+            });
             let slow = slope.product(&constant(&amplitude_rate));
-            cut(slow.sum(&series.derivative().product(&constant(&phase_rate))), highest)
+            cut(
+                slow.sum(&series.derivative().product(&constant(&phase_rate))),
+                highest,
+            )
         };
         let x = &solution.displacement;
         let velocity = rate(x);
@@ -128,19 +145,30 @@ fn several_cycles_each_on_its_own() {
         let found = solution.limit_cycle.as_ref().expect("a limit cycle");
         let leading = found.amplitude.truncated(Symbol::new("eps"), 0);
         assert_eq!(leading, Polynomial::constant(ratio(amplitude, 1)));
-        let judged = judge(&oscillator, &solution, &"eps = 1/100".parse().expect("values"), 0.01).expect("a verdict");
+        let judged = judge(
+            &oscillator,
+            &solution,
+            &"eps = 1/100".parse().expect("values"),
+            0.01,
+        )
+        .expect("a verdict");
         assert!(
-            judged.relative_error.is_some_and(|error| error.abs() < 1e-6),
+            judged
+                .relative_error
+                .is_some_and(|error| error.abs() < 1e-6),
             "{judged:?}"
         );
         assert!(
-            judged.max_deviation.is_some_and(|deviation| deviation < 1e-3),
+            judged
+                .max_deviation
+                .is_some_and(|deviation| deviation < 1e-3),
             "{judged:?}"
         );
     }
 }
 
-/// In powers of the amplitude the rates are cut off: only terms of one order balance at an amplitude that is small.
+/// In powers of the amplitude the rates are cut off: only terms of one order balance at an
+/// amplitude that is small.
 #[test]
 fn only_terms_of_one_order_let_a_motion_stay() {
     for (equation, amplitude) in [
@@ -179,12 +207,16 @@ fn refusals_name_what_is_in_the_way() {
         ("x'' + x + eps*abs(x)*x = 0", "eps*abs(x)*x"),
     ] {
         let refusal = refused(equation, 2);
-        assert!(matches!(&refusal, Refusal::Oscillator(_)), "{equation}: {refusal}");
+        assert!(
+            matches!(&refusal, Refusal::Oscillator(_)),
+            "{equation}: {refusal}"
+        );
         assert_eq!(refusal.term(), Some(term), "{equation}: {refusal}");
     }
 }
 
-/// Both leave homogeneous solutions out, so that the slow equations of a damped motion are the same.
+/// Both leave homogeneous solutions out, so that the slow equations of a damped motion are the
+/// same.
 #[test]
 fn multiple_scales_are_averaging_where_both_apply() {
     for equation in [
@@ -198,7 +230,8 @@ fn multiple_scales_are_averaging_where_both_apply() {
                 method: Some(method),
                 ..options(2)
             };
-            let solution = solve(&oscillator, &options).unwrap_or_else(|refusal| panic!("{equation}: {refusal}"));
+            let solution = solve(&oscillator, &options)
+                .unwrap_or_else(|refusal| panic!("{equation}: {refusal}"));
             solution.modulation.expect("slow equations")
         };
         let [scales, averaging] = [Method::MultipleScales, Method::Averaging].map(by);
@@ -212,7 +245,8 @@ fn multiple_scales_are_averaging_where_both_apply() {
     }
 }
 
-/// A free motion that is damped has its rates in the answer, and its verdict is on the motion as it decays.
+/// A free motion that is damped has its rates in the answer, and its verdict is on the motion as it
+/// decays.
 #[test]
 fn a_damped_motion_shows_how_it_decays() {
     let oscillator = Oscillator::parse("x'' + x + z*x'^3 = 0").expect("an oscillator");
@@ -224,7 +258,10 @@ fn a_damped_motion_shows_how_it_decays() {
     let slow = solution.slow().expect("slow equations");
     let expected = parse_expression("-3*z*a^3/8").expect("an expression");
     assert!(
-        (&slow.amplitude_rate - &expected).expand().expect("short").is_zero(),
+        (&slow.amplitude_rate - &expected)
+            .expand()
+            .expect("short")
+            .is_zero(),
         "{}",
         slow.amplitude_rate
     );
@@ -236,13 +273,16 @@ fn a_damped_motion_shows_how_it_decays() {
     )
     .expect("a verdict");
     assert!(
-        judged.relative_error.is_some_and(|error| error.abs() < 1e-3),
+        judged
+            .relative_error
+            .is_some_and(|error| error.abs() < 1e-3),
         "{judged:?}"
     );
 }
 
-/// From a start amplitude and phase are known in closed form: differentiated they are the slow equations, and at the start the motion
-/// is at A, at rest, up to the order to which the slow equations tell it.
+/// From a start amplitude and phase are known in closed form: differentiated they are the slow
+/// equations, and at the start the motion is at A, at rest, up to the order to which the slow
+/// equations tell it.
 #[test]
 fn closed_forms_from_a_start() {
     let t = Symbol::new("t");
@@ -280,16 +320,20 @@ fn closed_forms_from_a_start() {
                 let amplitude = transient.amplitude.evaluate(&values).expect(equation);
                 values.insert("a".into(), amplitude);
                 for (slope, rate) in slopes.iter().zip([&slow.amplitude_rate, &slow.phase_rate]) {
-                    let [slope, rate] = [slope, rate].map(|value| value.evaluate(&values).expect(equation));
-                    assert!((slope - rate).abs() < 1e-11, "{equation} at {time}: {slope}, {rate}");
+                    let [slope, rate] =
+                        [slope, rate].map(|value| value.evaluate(&values).expect(equation));
+                    assert!(
+                        (slope - rate).abs() < 1e-11,
+                        "{equation} at {time}: {slope}, {rate}"
+                    );
                 }
             }
             values.insert(t, 0.0);
             let start = transient.amplitude.evaluate(&values).expect(equation);
             values.insert("a".into(), start);
             let theta = phase.evaluate(&values).expect(equation);
-            let [rate, turning] =
-                [&slow.amplitude_rate, &slow.phase_rate].map(|rate| rate.evaluate(&values).expect(equation));
+            let [rate, turning] = [&slow.amplitude_rate, &slow.phase_rate]
+                .map(|rate| rate.evaluate(&values).expect(equation));
             let position = |a: f64, theta: f64| {
                 let value_of = |name: Symbol| {
                     if name.name() == "a" {
@@ -301,22 +345,40 @@ fn closed_forms_from_a_start() {
                 solution.motion(&value_of).expect("numbers").evaluate(theta)
             };
             let step = 1e-5;
-            let by_amplitude = (position(start + step, theta) - position(start - step, theta)) / (2.0 * step);
-            let by_phase = (position(start, theta + step) - position(start, theta - step)) / (2.0 * step);
+            let by_amplitude =
+                (position(start + step, theta) - position(start - step, theta)) / (2.0 * step);
+            let by_phase =
+                (position(start, theta + step) - position(start, theta - step)) / (2.0 * step);
             (position(start, theta) - 0.7).abs() + (by_amplitude * rate + by_phase * turning).abs()
         };
         let slope = (at_size(0.02) / at_size(0.01)).log2();
-        assert!(slope > f64::from(order) - 0.1, "{equation} to order {order}: {slope}");
+        assert!(
+            slope > f64::from(order) - 0.1,
+            "{equation} to order {order}: {slope}"
+        );
     }
 }
 
-/// Followed over times of 1/small, the error of order n vanishes with the power n: in a parameter, and in the amplitude.
+/// Followed over times of 1/small, the error of order n vanishes with the power n: in a parameter,
+/// and in the amplitude.
 #[test]
 fn slopes_of_motions_from_a_start() {
     for (equation, order, at) in [
-        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 1, "zeta = 1/20, eps = 1/10, A = 1"),
-        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 2, "zeta = 1/20, eps = 1/10, A = 1"),
-        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 3, "zeta = 1/20, eps = 1/10, A = 1"),
+        (
+            "x'' + 2*zeta*x' + x + eps*x^3 = 0",
+            1,
+            "zeta = 1/20, eps = 1/10, A = 1",
+        ),
+        (
+            "x'' + 2*zeta*x' + x + eps*x^3 = 0",
+            2,
+            "zeta = 1/20, eps = 1/10, A = 1",
+        ),
+        (
+            "x'' + 2*zeta*x' + x + eps*x^3 = 0",
+            3,
+            "zeta = 1/20, eps = 1/10, A = 1",
+        ),
         ("x'' - mu*(1 - x^2)*x' + x = 0", 3, "mu = 1/10, A = 1/2"),
         ("x'' + x'/50 + sin(x) = 0", 4, "A = 1/2"),
         // About 0.92, a root in numbers and one in letters.
@@ -351,13 +413,19 @@ fn slopes_of_motions_from_a_start() {
     }
 }
 
-/// A viscous bubble: its damping is another at every radius, and its linear part counts as the square of the amplitude.
+/// A viscous bubble: its damping is another at every radius, and its linear part counts as the
+/// square of the amplitude.
 #[test]
 fn damping_that_changes_with_the_place() {
     let equation = "x*x'' + 3*x'^2/2 + 4*nu*x'/x - p*(x^(-3*k) - 1) = 0";
     let oscillator = Oscillator::parse(equation).expect("an oscillator");
     let solution = derive(equation, 4);
-    let deviations = ["nu = 1/25, A = 1/5", "nu = 1/100, A = 1/10", "nu = 1/400, A = 1/20"].map(|at| {
+    let deviations = [
+        "nu = 1/25, A = 1/5",
+        "nu = 1/100, A = 1/10",
+        "nu = 1/400, A = 1/20",
+    ]
+    .map(|at| {
         let at: Values = format!("{at}, p = 1, k = 7/5").parse().expect("values");
         let judged = judge(&oscillator, &solution, &at, 0.01).expect("a verdict");
         judged.max_deviation.expect("a deviation")

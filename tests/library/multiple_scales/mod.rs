@@ -1,6 +1,8 @@
-//! The method of multiple scales against published slow equations, against true motions, and put back into the equation.
+//! The method of multiple scales against published slow equations, against true motions, and put
+//! back into the equation.
 //!
-//! - Duffing, pendulum, van der Pol: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapters 2 and 3.
+//! - Duffing, pendulum, van der Pol: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley
+//!   1979, chapters 2 and 3.
 
 mod driven;
 mod drives;
@@ -30,7 +32,9 @@ fn of_text(text: &str) -> Polynomial {
 }
 
 fn of_expression(expression: &Expr) -> Polynomial {
-    let polynomial = expression.expand().and_then(|sum| sum.to_polynomial(&mut |_| None));
+    let polynomial = expression
+        .expand()
+        .and_then(|sum| sum.to_polynomial(&mut |_| None));
     polynomial.expect("short").expect("a polynomial")
 }
 

@@ -7,11 +7,13 @@ use super::force::{Shape, Term};
 use super::quadrature::{bisect, integrate, solve};
 
 impl Question<'_> {
-    /// How many waves of sines and exponents of exponentials the motion runs through: beyond a few, sums over points say
-    /// nothing of them.
+    /// How many waves of sines and exponents of exponentials the motion runs through: beyond a few,
+    /// sums over points say nothing of them.
     pub fn waves(&self) -> f64 {
         let rate = |term: &Term| match term.shape {
-            Shape::Sine(b) | Shape::Cosine(b) | Shape::Exponential(b) | Shape::Sinh(b) => b.value() * self.size(),
+            Shape::Sine(b) | Shape::Cosine(b) | Shape::Exponential(b) | Shape::Sinh(b) => {
+                b.value() * self.size()
+            }
             _ => 0.0,
         };
         self.force.terms.iter().map(rate).fold(0.0, f64::max)
@@ -25,7 +27,8 @@ impl Question<'_> {
         if order == 1 && self.is_odd() {
             return self.shared_integral();
         }
-        // Past another equilibrium the branch from rest may turn back, and what the steps below jump onto is another one.
+        // Past another equilibrium the branch from rest may turn back, and what the steps below
+        // jump onto is another one.
         if self.meets_equilibria() {
             return Answer::Unknown;
         }
@@ -34,7 +37,8 @@ impl Question<'_> {
         if let Some(degree) = self.force.degree() {
             points = (degree + 1) * (harmonics.last().expect("a harmonic") + 1) + 4;
         }
-        // Once on a branch, more points only move the answer a little; a branch that ends may be the fault of too few.
+        // Once on a branch, more points only move the answer a little; a branch that ends may be
+        // the fault of too few.
         let polynomial = self.force.degree().is_some();
         let mut current = None;
         loop {
@@ -43,7 +47,9 @@ impl Question<'_> {
                     return Answer::Unknown;
                 }
                 if polynomial {
-                    return Answer::Nothing("the balance has no branch from rest to this amplitude");
+                    return Answer::Nothing(
+                        "the balance has no branch from rest to this amplitude",
+                    );
                 }
                 points *= 4;
                 continue;
@@ -55,7 +61,8 @@ impl Question<'_> {
                 return self.given(found[0], 1e4);
             }
             if change < 1e-12 {
-                // Even points may miss a narrow place of the force, however many agree: the defect is measured beside this.
+                // Even points may miss a narrow place of the force, however many agree: the defect
+                // is measured beside this.
                 let narrow = !self.force.places().is_empty();
                 return self.given(found[0], if narrow { 1e8 } else { 1e4 });
             }
@@ -76,22 +83,36 @@ impl Question<'_> {
         }
     }
 
-    /// Whether the force vanishes between rest and half as much again as the amplitude, on either side.
+    /// Whether the force vanishes between rest and half as much again as the amplitude, on either
+    /// side.
     fn meets_equilibria(&self) -> bool {
         const SAMPLES: u32 = 2000;
         let even = (1..=SAMPLES).map(|k| 1.5 * self.size() * f64::from(k) / f64::from(SAMPLES));
         // Wells may be far smaller than the motion.
-        let even = even.chain((0..4 * SAMPLES).map(|k| 1.5 * self.size() * (-f64::from(k) / 200.0).exp()));
-        let places = self.force.places().into_iter().map(|place| (place - self.origin).abs());
+        let even =
+            even.chain((0..4 * SAMPLES).map(|k| 1.5 * self.size() * (-f64::from(k) / 200.0).exp()));
+        let places = self
+            .force
+            .places()
+            .into_iter()
+            .map(|place| (place - self.origin).abs());
         let mut sizes = even.chain(places.filter(|size| *size > 0.0 && *size < 1.5 * self.size()));
         sizes.any(|y| self.f(y) <= 0.0 || self.f(-y) >= 0.0)
     }
 
-    /// How far a motion of these coefficients is from a balance of its harmonics, beside the inertia of a motion of one term;
-    /// less what the last digits of the coefficients may do to it. `None` where the integrals do not settle.
-    pub fn defect_of_balance(&self, squared: f64, coefficients: &[f64], order: usize) -> Option<f64> {
+    /// How far a motion of these coefficients is from a balance of its harmonics, beside the
+    /// inertia of a motion of one term; less what the last digits of the coefficients may do to it.
+    /// `None` where the integrals do not settle.
+    pub fn defect_of_balance(
+        &self,
+        squared: f64,
+        coefficients: &[f64],
+        order: usize,
+    ) -> Option<f64> {
         const PANELS: i32 = 64;
-        let mut panels: Vec<f64> = (0..=PANELS).map(|k| PI * f64::from(k) / f64::from(PANELS)).collect();
+        let mut panels: Vec<f64> = (0..=PANELS)
+            .map(|k| PI * f64::from(k) / f64::from(PANELS))
+            .collect();
         let distance = |theta: f64| -> f64 {
             let wave = |(k, a): (usize, &f64)| a * (k as f64 * theta).cos();
             coefficients.iter().enumerate().map(wave).sum()
@@ -107,10 +128,12 @@ impl Question<'_> {
             panels.extend(crossed);
             panels.sort_by(f64::total_cmp);
         }
-        // The last digit of the coefficients moves the motion, beside a pole by more than its distance allows.
+        // The last digit of the coefficients moves the motion, beside a pole by more than its
+        // distance allows.
         let rounding = f64::EPSILON * coefficients.iter().map(|a| a.abs()).sum::<f64>();
         let slope = |theta: f64| self.force.slope(self.origin + distance(theta)).abs();
-        let noise = 2.0 / PI * rounding * integrate(&slope, &panels, 1e-3)? / (squared * self.size());
+        let noise =
+            2.0 / PI * rounding * integrate(&slope, &panels, 1e-3)? / (squared * self.size());
         let mut largest = (coefficients.iter().sum::<f64>() / self.amplitude - 1.0).abs();
         for k in self.balanced(order) {
             let integrand = |theta: f64| self.f(distance(theta)) * (k as f64 * theta).cos();
@@ -121,14 +144,26 @@ impl Question<'_> {
         Some(f64::max(largest - noise, 0.0))
     }
 
-    /// omega^2 and the coefficients in units of the amplitude: from rest, or from a solution with fewer points.
-    fn balance(&self, harmonics: &[usize], points: usize, near: Option<&[f64]>) -> Option<Vec<f64>> {
+    /// omega^2 and the coefficients in units of the amplitude: from rest, or from a solution with
+    /// fewer points.
+    fn balance(
+        &self,
+        harmonics: &[usize],
+        points: usize,
+        near: Option<&[f64]>,
+    ) -> Option<Vec<f64>> {
         let count = harmonics.len();
-        let first = harmonics.iter().position(|&k| k == 1).expect("the first harmonic");
+        let first = harmonics
+            .iter()
+            .position(|&k| k == 1)
+            .expect("the first harmonic");
         let table: Vec<Vec<f64>> = (0..points)
             .map(|i| {
                 let theta = PI * (i as f64 + 0.5) / points as f64;
-                harmonics.iter().map(|&k| (k as f64 * theta).cos()).collect()
+                harmonics
+                    .iter()
+                    .map(|&k| (k as f64 * theta).cos())
+                    .collect()
             })
             .collect();
         // Unknowns in units of the amplitude `part A`: omega^2, a_k.
@@ -143,7 +178,8 @@ impl Question<'_> {
                     let force = self.f(amplitude * y) / amplitude;
                     let slope = self.force.slope(self.origin + amplitude * y);
                     for (row, cosine) in cosines.iter().enumerate() {
-                        let weight = if harmonics[row] == 0 { 1.0 } else { 2.0 } / points as f64 * cosine;
+                        let weight =
+                            if harmonics[row] == 0 { 1.0 } else { 2.0 } / points as f64 * cosine;
                         rows[row][count + 1] -= weight * force;
                         for (column, other) in cosines.iter().enumerate() {
                             rows[row][column + 1] += weight * slope * other;
@@ -172,7 +208,9 @@ impl Question<'_> {
                 let change = solve(rows)?;
                 unknowns[0] += unit * change[0];
                 (1..=count).for_each(|i| unknowns[i] += change[i]);
-                let moved = change.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+                let moved = change
+                    .iter()
+                    .fold(0.0, |most: f64, value| most.max(value.abs()));
                 if !moved.is_finite() || unknowns[0] <= 0.0 {
                     return None;
                 }

@@ -1,5 +1,6 @@
-//! Methods of one term, series and their quotients, each from its definition in the literature: omega^2 at one amplitude,
-//! without dimensions. The references are those at the head of the method's file in `crates/oscillator/src/method/`.
+//! Methods of one term, series and their quotients, each from its definition in the literature:
+//! omega^2 at one amplitude, without dimensions. The references are those at the head of the
+//! method's file in `crates/oscillator/src/method/`.
 
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 
@@ -13,7 +14,8 @@ pub enum Answer {
     Value(f64, f64),
     /// The same for a motion about another equilibrium, on which a method may be silent.
     Elsewhere(f64, f64),
-    /// The definition has no value here: a motion through a pole, a fold of the branch, no limit at rest.
+    /// The definition has no value here: a motion through a pole, a fold of the branch, no limit at
+    /// rest.
     Nothing(&'static str),
     /// This test cannot tell.
     Unknown,
@@ -44,7 +46,8 @@ impl Question<'_> {
         self.origin - self.size() > low && self.origin + self.size() < high
     }
 
-    /// What rounding does to the force at this distance, relatively: of its terms, and of the equilibrium itself.
+    /// What rounding does to the force at this distance, relatively: of its terms, and of the
+    /// equilibrium itself.
     pub fn noise(&self, y: f64) -> f64 {
         let x = self.origin + y;
         let moved = if self.origin == 0.0 {
@@ -88,8 +91,8 @@ impl Question<'_> {
         angles
     }
 
-    /// `c_1/A = (2/(pi A)) int_0^pi f(A cos theta) cos theta dtheta`: iteration perturbation, parameter expansion, max-min,
-    /// Hamiltonian and variational iteration.
+    /// `c_1/A = (2/(pi A)) int_0^pi f(A cos theta) cos theta dtheta`: iteration perturbation,
+    /// parameter expansion, max-min, Hamiltonian and variational iteration.
     pub fn shared_integral(&self) -> Answer {
         if !self.reachable() {
             return Answer::Nothing("the motion of one term runs through a pole");
@@ -126,7 +129,8 @@ impl Question<'_> {
         let Some(rise) = integrate(&|y| self.f(y), &places, 1e-14) else {
             return Answer::Unknown;
         };
-        let terms = integrate(&|y| self.force.size(self.origin + y), &places, 1e-4).unwrap_or(f64::INFINITY);
+        let terms = integrate(&|y| self.force.size(self.origin + y), &places, 1e-4)
+            .unwrap_or(f64::INFINITY);
         self.given(4.0 * rise / (to * to), terms / rise.abs())
     }
 
@@ -142,8 +146,12 @@ impl Question<'_> {
     /// `f'(A/2)`.
     pub fn frequency_formula(&self) -> Answer {
         let slope = self.force.slope(self.origin + 0.5 * self.size());
-        let near = [0.5 - 1e-6, 0.5 + 1e-6].map(|part| self.force.slope(self.origin + part * self.size()));
-        if near.iter().any(|value| (value - slope).abs() > 1e-2 * slope.abs()) {
+        let near =
+            [0.5 - 1e-6, 0.5 + 1e-6].map(|part| self.force.slope(self.origin + part * self.size()));
+        if near
+            .iter()
+            .any(|value| (value - slope).abs() > 1e-2 * slope.abs())
+        {
             return Answer::Unknown;
         }
         // The slope is a difference of slopes of the terms.
@@ -162,7 +170,8 @@ impl Question<'_> {
         self.given(slope, 1e2 * terms / slope.abs())
     }
 
-    /// The Taylor coefficients of the force in units of the amplitude: `g_k = f_k A^(k-1)`, from the linear one on.
+    /// The Taylor coefficients of the force in units of the amplitude: `g_k = f_k A^(k-1)`, from
+    /// the linear one on.
     pub fn scaled_taylor(&self, degree: usize) -> Option<Vec<f64>> {
         let series = self.force.taylor(self.origin, degree)?;
         let scaled: Vec<f64> = (0..=degree)
@@ -174,20 +183,26 @@ impl Question<'_> {
                 }
             })
             .collect();
-        scaled.iter().all(|value| value.is_finite()).then_some(scaled)
+        scaled
+            .iter()
+            .all(|value| value.is_finite())
+            .then_some(scaled)
     }
 
     /// `omega^2 = sum e_k A^k`: each `e_k A^k`, through the period as a function of the energy.
     ///
-    /// With `V = u^2/2` and `y = sum b_k u^k` the period is `2 pi sum (2j+1) b_(2j+1) (2j-1)!!/(2j)!! (2V)^j`: the integral of
-    /// `dy/du` over a circle of radius `sqrt(2V)`.
+    /// With `V = u^2/2` and `y = sum b_k u^k` the period is
+    /// `2 pi sum (2j+1) b_(2j+1) (2j-1)!!/(2j)!! (2V)^j`: the integral of `dy/du` over a circle of
+    /// radius `sqrt(2V)`.
     pub fn exact_series(&self, order: usize) -> Option<Vec<f64>> {
         let g = self.scaled_taylor(order + 1)?;
         if g[1] <= 0.0 {
             return None;
         }
         // 2V/(g_1 z^2) = 1 + ..., and u/z = its root.
-        let square: Vec<f64> = (0..=order).map(|k| 2.0 * g[k + 1] / ((k + 2) as f64 * g[1])).collect();
+        let square: Vec<f64> = (0..=order)
+            .map(|k| 2.0 * g[k + 1] / ((k + 2) as f64 * g[1]))
+            .collect();
         let root = power(&square, 0.5);
         // Lagrange: b_k = [z^(k-1)] (z/u)^k / k.
         let b = |k: usize| power(&root, -(k as f64))[k - 1] / k as f64;
@@ -205,7 +220,12 @@ impl Question<'_> {
             }
             energy = series_product(&energy, &square);
         }
-        Some(power(&period, -2.0).into_iter().map(|value| g[1] * value).collect())
+        Some(
+            power(&period, -2.0)
+                .into_iter()
+                .map(|value| g[1] * value)
+                .collect(),
+        )
     }
 
     /// The series of omega^2 cut after a power of the amplitude.
@@ -218,8 +238,9 @@ impl Question<'_> {
         self.given(value, 100.0 * terms / value.abs())
     }
 
-    /// The quotient of polynomials that agrees with the exact series, in the squared amplitude where odd powers are absent.
-    /// In a parameter, `step` is the power of the amplitude that goes with it.
+    /// The quotient of polynomials that agrees with the exact series, in the squared amplitude
+    /// where odd powers are absent. In a parameter, `step` is the power of the amplitude that goes
+    /// with it.
     pub fn pade(&self, above: usize, below: usize, step: Option<usize>) -> Answer {
         let order = above + below;
         let Some(series) = self.exact_series(step.unwrap_or(2) * order) else {
@@ -248,7 +269,11 @@ impl Question<'_> {
         };
         let q: Vec<f64> = [1.0].into_iter().chain(q).collect();
         let p: Vec<f64> = (0..=above)
-            .map(|i| (0..=i.min(below)).map(|j| q[j] * at(i as i64 - j as i64)).sum())
+            .map(|i| {
+                (0..=i.min(below))
+                    .map(|j| q[j] * at(i as i64 - j as i64))
+                    .sum()
+            })
             .collect();
         let sum = |terms: &[f64]| -> (f64, f64) {
             let terms: Vec<f64> = terms
@@ -256,11 +281,15 @@ impl Question<'_> {
                 .enumerate()
                 .map(|(k, t)| t * growth.powi(k as i32))
                 .collect();
-            (terms.iter().sum(), terms.iter().map(|term| term.abs()).sum())
+            (
+                terms.iter().sum(),
+                terms.iter().map(|term| term.abs()).sum(),
+            )
         };
         let (numerator, denominator) = (sum(&p), sum(&q));
         let noise = numerator.1 / numerator.0.abs() + denominator.1 / denominator.0.abs();
-        // Coefficients of a nearly singular system are rounding: what a change of the last digits does is part of the noise.
+        // Coefficients of a nearly singular system are rounding: what a change of the last digits
+        // does is part of the noise.
         self.given(numerator.0 / denominator.0, 1e4 * noise)
     }
 
@@ -270,7 +299,9 @@ impl Question<'_> {
 }
 
 pub fn series_product(a: &[f64], b: &[f64]) -> Vec<f64> {
-    (0..a.len()).map(|n| (0..=n).map(|k| a[k] * b[n - k]).sum()).collect()
+    (0..a.len())
+        .map(|n| (0..=n).map(|k| a[k] * b[n - k]).sum())
+        .collect()
 }
 
 /// The series of a power of a series (J. C. P. Miller's recurrence).

@@ -40,14 +40,21 @@ pub struct Case {
 pub fn case(random: &mut Random) -> Case {
     let chosen = asked_for();
     let asked = |name: &str| chosen.as_ref().is_none_or(|part| name.contains(part));
-    let asked: Vec<_> = FAMILIES.iter().copied().filter(|(name, _)| asked(name)).collect();
+    let asked: Vec<_> = FAMILIES
+        .iter()
+        .copied()
+        .filter(|(name, _)| asked(name))
+        .collect();
     let (family, terms) = random.choose(&asked);
     let terms = terms(random);
     let (length, rate) = if random.percent(50.0) {
         (0, 0)
     } else {
         // Lengths in steps of a million keep fractional powers of ten whole.
-        (6 * random.whole(-2, 2) as i32, 2 * random.whole(-8, 8) as i32)
+        (
+            6 * random.whole(-2, 2) as i32,
+            2 * random.whole(-8, 8) as i32,
+        )
     };
     let wide = random.percent(30.0);
     let size = if wide {
@@ -58,7 +65,11 @@ pub fn case(random: &mut Random) -> Case {
     let amplitude = number(if random.percent(30.0) { -size } else { size });
     Case {
         family,
-        force: Force { terms, length, rate },
+        force: Force {
+            terms,
+            length,
+            rate,
+        },
         amplitude,
     }
 }
@@ -108,7 +119,14 @@ fn either(random: &mut Random) -> Number {
 
 fn stiffness(random: &mut Random) -> Term {
     let one = random.percent(50.0);
-    term(if one { Number::new(1, 0) } else { positive(random) }, Shape::Power(1))
+    term(
+        if one {
+            Number::new(1, 0)
+        } else {
+            positive(random)
+        },
+        Shape::Power(1),
+    )
 }
 
 fn odd_polynomial(random: &mut Random) -> Vec<Term> {
@@ -140,7 +158,16 @@ fn power_alone(random: &mut Random) -> Vec<Term> {
 }
 
 fn fractional_power(random: &mut Random) -> Vec<Term> {
-    let (p, q) = random.choose(&[(1, 3), (2, 1), (3, 2), (1, 2), (5, 3), (5, 2), (2, 3), (7, 3)]);
+    let (p, q) = random.choose(&[
+        (1, 3),
+        (2, 1),
+        (3, 2),
+        (1, 2),
+        (5, 3),
+        (5, 2),
+        (2, 3),
+        (7, 3),
+    ]);
     let mut terms = vec![term(positive(random), Shape::SignedPower(p, q))];
     if random.percent(60.0) {
         terms.push(stiffness(random));
@@ -186,8 +213,14 @@ fn rational(random: &mut Random) -> Vec<Term> {
     let b = positive(random);
     match random.whole(0, 2) {
         0 => vec![term(positive(random), Shape::Saturating(b))],
-        1 => vec![stiffness(random), term(positive(random), Shape::Saturating(b))],
-        _ => vec![stiffness(random), term(positive(random), Shape::Stiffening(b))],
+        1 => vec![
+            stiffness(random),
+            term(positive(random), Shape::Saturating(b)),
+        ],
+        _ => vec![
+            stiffness(random),
+            term(positive(random), Shape::Stiffening(b)),
+        ],
     }
 }
 
@@ -233,7 +266,10 @@ fn bump(random: &mut Random) -> Vec<Term> {
     } else {
         height * sharp.value().sqrt()
     };
-    vec![stiffness(random), term(number(steep), Shape::Bump(place, sharp))]
+    vec![
+        stiffness(random),
+        term(number(steep), Shape::Bump(place, sharp)),
+    ]
 }
 
 fn static_load(random: &mut Random) -> Vec<Term> {
@@ -248,7 +284,10 @@ fn static_load(random: &mut Random) -> Vec<Term> {
         }
     }
     let load = number(random.between(0.05, 2.0));
-    terms.push(term(Number::new(-load.mantissa, load.exponent), Shape::Constant));
+    terms.push(term(
+        Number::new(-load.mantissa, load.exponent),
+        Shape::Constant,
+    ));
     terms
 }
 

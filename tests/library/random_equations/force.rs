@@ -1,8 +1,9 @@
-//! Random forces: a sum of terms that knows its text, its value without cancellation, its Taylor series and where it
-//! turns fast. Nothing here uses the program.
+//! Random forces: a sum of terms that knows its text, its value without cancellation, its Taylor
+//! series and where it turns fast. Nothing here uses the program.
 //!
-//! A force is made without dimensions, `g(y)`; what the program sees is `10^(rate + length) g(x/10^length)`, whose
-//! frequencies are `10^(rate/2)` times as large at amplitudes `10^length` times as large.
+//! A force is made without dimensions, `g(y)`; what the program sees is
+//! `10^(rate + length) g(x/10^length)`, whose frequencies are `10^(rate/2)` times as large at
+//! amplitudes `10^length` times as large.
 
 use std::collections::BTreeMap;
 
@@ -106,7 +107,9 @@ impl Force {
         let mut text = "x''".to_owned();
         let mut values = BTreeMap::new();
         for term in &self.terms {
-            let coefficient = term.coefficient.times_ten_to(term.power_of_ten(self.length, self.rate));
+            let coefficient = term
+                .coefficient
+                .times_ten_to(term.power_of_ten(self.length, self.rate));
             let shape = term.shape.text(self.length);
             match term.name {
                 Some(name) => {
@@ -120,7 +123,10 @@ impl Force {
                 None => text += &format!(" + {}*{shape}", coefficient.text()),
             }
         }
-        (text.replace("+ 1*", "+ ").replace("- 1*", "- ") + " = 0", values)
+        (
+            text.replace("+ 1*", "+ ").replace("- 1*", "- ") + " = 0",
+            values,
+        )
     }
 
     /// `g(origin + y) - g(origin)`, without cancellation where that is easy.
@@ -167,7 +173,10 @@ impl Force {
 
     /// Places where the force has a corner or turns fast.
     pub fn places(&self) -> Vec<f64> {
-        self.terms.iter().flat_map(|term| term.shape.places()).collect()
+        self.terms
+            .iter()
+            .flat_map(|term| term.shape.places())
+            .collect()
     }
 
     /// The interval about `origin` on which the force is finite.
@@ -221,7 +230,11 @@ impl Term {
             Shape::SignedPower(p, q) => length - length * p as i32 / q as i32,
             Shape::Stiffening(_) => -2 * length,
             Shape::Gap(_) | Shape::Pole(_) => 2 * length,
-            Shape::Saturating(_) | Shape::Barrier(_) | Shape::Step(_) | Shape::Walls(_) | Shape::Bump(..) => 0,
+            Shape::Saturating(_)
+            | Shape::Barrier(_)
+            | Shape::Step(_)
+            | Shape::Walls(_)
+            | Shape::Bump(..) => 0,
             _ => length,
         }
     }
@@ -339,8 +352,12 @@ impl Shape {
                 let mean = |k: u32| x.powi(k as i32) * origin.powi((n - 1 - k) as i32);
                 y * (0..n).map(mean).sum::<f64>()
             }
-            Self::Sine(b) => 2.0 * (b.value() * (origin + 0.5 * y)).cos() * (0.5 * b.value() * y).sin(),
-            Self::Cosine(b) => -2.0 * (b.value() * (origin + 0.5 * y)).sin() * (0.5 * b.value() * y).sin(),
+            Self::Sine(b) => {
+                2.0 * (b.value() * (origin + 0.5 * y)).cos() * (0.5 * b.value() * y).sin()
+            }
+            Self::Cosine(b) => {
+                -2.0 * (b.value() * (origin + 0.5 * y)).sin() * (0.5 * b.value() * y).sin()
+            }
             Self::Exponential(b) => (b.value() * origin).exp() * (b.value() * y).exp_m1(),
             _ => self.value(origin + y) - self.value(origin),
         }
@@ -392,7 +409,12 @@ impl Shape {
             }
             series
         };
-        let scaled = |series: &[f64], factor: f64| series.iter().map(|value| value * factor).collect::<Vec<_>>();
+        let scaled = |series: &[f64], factor: f64| {
+            series
+                .iter()
+                .map(|value| value * factor)
+                .collect::<Vec<_>>()
+        };
         let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + b).collect::<Vec<_>>();
         let one = constant(1.0);
         let identity = linear(1.0, 0.0);
@@ -401,7 +423,14 @@ impl Shape {
             Self::Power(n) => (0..n).fold(one, |power, _| product(&power, &identity)),
             Self::SignedPower(..) => return None,
             Self::Sine(b) | Self::Cosine(b) => {
-                let (b, turn) = (b.value(), if matches!(self, Self::Cosine(_)) { 1 } else { 0 });
+                let (b, turn) = (
+                    b.value(),
+                    if matches!(self, Self::Cosine(_)) {
+                        1
+                    } else {
+                        0
+                    },
+                );
                 let (sine, cosine) = (b * x).sin_cos();
                 let values = [sine, cosine, -sine, -cosine];
                 let mut factor = 1.0;
@@ -430,7 +459,10 @@ impl Shape {
             Self::Arctangent(b) => {
                 let inside = linear(b.value(), 0.0);
                 let below = sum(&one, &product(&inside, &inside));
-                integral((b.value() * x).atan(), &quotient(&constant(b.value()), &below))
+                integral(
+                    (b.value() * x).atan(),
+                    &quotient(&constant(b.value()), &below),
+                )
             }
             Self::Exponential(b) => {
                 let mut series = exponential(&linear(b.value(), 0.0));
@@ -443,9 +475,15 @@ impl Shape {
             }
             Self::Stiffening(b) => {
                 let square = product(&identity, &identity);
-                quotient(&product(&square, &identity), &sum(&one, &scaled(&square, b.value())))
+                quotient(
+                    &product(&square, &identity),
+                    &sum(&one, &scaled(&square, b.value())),
+                )
             }
-            Self::Pole(d) => quotient(&scaled(&identity, d.value().recip()), &linear(-1.0, d.value())),
+            Self::Pole(d) => quotient(
+                &scaled(&identity, d.value().recip()),
+                &linear(-1.0, d.value()),
+            ),
             Self::Gap(d) => {
                 let gap = linear(-1.0, d.value());
                 quotient(&identity, &product(&gap, &gap))
@@ -456,7 +494,10 @@ impl Shape {
             Self::Barrier(_) | Self::Step(_) | Self::Walls(_) => return None,
             Self::Bump(d, s) => {
                 let from = linear(1.0, -d.value());
-                product(&from, &exponential(&scaled(&product(&from, &from), -s.value())))
+                product(
+                    &from,
+                    &exponential(&scaled(&product(&from, &from), -s.value())),
+                )
             }
         })
     }

@@ -1,5 +1,5 @@
-//! Random forces with a hilltop at rest between two wells, and the motions over both: every method against its definition, and the least
-//! amplitude against the energy.
+//! Random forces with a hilltop at rest between two wells, and the motions over both: every method
+//! against its definition, and the least amplitude against the energy.
 //!
 //! ```text
 //! -k x + c x^n + d x^m          -k sin(b x) + c x          -k tanh(b x) + c x          -k x/(1 + b x^2) + c x
@@ -57,7 +57,8 @@ fn two_wells(random: &mut Random) -> (Force, f64) {
         rate: random.choose(&[0, 0, -4, 8]),
     };
     let place = |step: u32| 1e-3 * 1.01_f64.powi(step as i32);
-    let crossing = (0..2000).find(|&step| force.value(place(step)) < 0.0 && force.value(place(step + 1)) >= 0.0);
+    let crossing = (0..2000)
+        .find(|&step| force.value(place(step)) < 0.0 && force.value(place(step + 1)) >= 0.0);
     let step = crossing.expect("a well");
     let bottom = bisect(&|x| force.value(x), place(step), place(step + 1));
     (force, bottom)
@@ -65,7 +66,9 @@ fn two_wells(random: &mut Random) -> (Force, f64) {
 
 /// The amplitude from which on the potential is above that at rest.
 fn edge(force: &Force, bottom: f64) -> Option<f64> {
-    let risen = |x: f64| integrate(&|y| force.value(y), &[0.0, bottom.min(x), x], 1e-14).unwrap_or(f64::NAN);
+    let risen = |x: f64| {
+        integrate(&|y| force.value(y), &[0.0, bottom.min(x), x], 1e-14).unwrap_or(f64::NAN)
+    };
     let outside = (1..4000).map(|k| bottom * (1.0 + 0.01 * f64::from(k)));
     let beyond = outside
         .take_while(|x| force.value(*x) > 0.0)
@@ -89,9 +92,15 @@ fn motions_over_both_wells_are_those_of_every_definition() {
         let (force, bottom) = two_wells(random);
         let amplitude = number(random.choose(&[-1.0, 1.0]) * bottom * random.between(0.4, 6.0));
         let (text, _) = force.equation();
-        let oscillator = Oscillator::parse(&text).expect("an equation").about(Expr::zero());
+        let oscillator = Oscillator::parse(&text)
+            .expect("an equation")
+            .about(Expr::zero());
         let length = 10_f64.powi(force.length);
-        let at: BTreeMap<Symbol, f64> = [(Symbol::new("A"), amplitude.times_ten_to(force.length).value())].into();
+        let at: BTreeMap<Symbol, f64> = [(
+            Symbol::new("A"),
+            amplitude.times_ten_to(force.length).value(),
+        )]
+        .into();
         let question = Question {
             force: &force,
             origin: 0.0,
@@ -104,7 +113,8 @@ fn motions_over_both_wells_are_those_of_every_definition() {
             ..Options::default()
         };
         let found_by = |options: &Options| {
-            let solution = solve(&oscillator, options).unwrap_or_else(|error| panic!("seed {seed}: {text}: {error}"));
+            let solution = solve(&oscillator, options)
+                .unwrap_or_else(|error| panic!("seed {seed}: {text}: {error}"));
             numbers::evaluate(&oscillator, &solution, &at).ok()
         };
         let mut say = |complaint: String| {
@@ -116,14 +126,24 @@ fn motions_over_both_wells_are_those_of_every_definition() {
         // Where the least amplitude is.
         if let Some(edge) = edge(&force, bottom) {
             let written: Expr = oscillator.force.clone();
-            let about =
-                AtNumbers::new(&written, "x".into(), &Expr::zero(), &BTreeMap::new(), edge * length).expect("a force");
+            let about = AtNumbers::new(
+                &written,
+                "x".into(),
+                &Expr::zero(),
+                &BTreeMap::new(),
+                edge * length,
+            )
+            .expect("a force");
             let inner = Well::new(&about, 1.5 * edge * length).and_then(|well| well.inner);
             edges += 1;
             match inner {
                 Some(inner) if edge >= question.size() || inner.place == 0.0 => {
                     if (inner.amplitude / (edge * length) - 1.0).abs() > 1e-6 {
-                        say(format!("begins at {:e}, not {:e}", inner.amplitude, edge * length));
+                        say(format!(
+                            "begins at {:e}, not {:e}",
+                            inner.amplitude,
+                            edge * length
+                        ));
                     }
                 }
                 Some(_) => {}
@@ -144,8 +164,14 @@ fn motions_over_both_wells_are_those_of_every_definition() {
             (of(Method::MaxMin, None), shared),
             (of(Method::HarmonicBalance, Some(1)), shared),
             (of(Method::EnergyBalance, None), question.energy_balance()),
-            (of(Method::AmplitudeFrequency, None), question.amplitude_frequency()),
-            (of(Method::FrequencyFormula, None), question.frequency_formula()),
+            (
+                of(Method::AmplitudeFrequency, None),
+                question.amplitude_frequency(),
+            ),
+            (
+                of(Method::FrequencyFormula, None),
+                question.frequency_formula(),
+            ),
         ];
         let order = random.choose(&[1, 2, 3]);
         let hbar = Options {
@@ -167,17 +193,24 @@ fn motions_over_both_wells_are_those_of_every_definition() {
                 (Some(found), Answer::Value(expected, noise))
                     if (found / expected - 1.0).abs() <= AGREEMENT + noise => {}
                 (Some(found), Answer::Value(expected, noise)) => {
-                    say(format!("{method}: {found}, not {expected} (good to {noise:.0e})"));
+                    say(format!(
+                        "{method}: {found}, not {expected} (good to {noise:.0e})"
+                    ));
                 }
-                (Some(found), Answer::Nothing(why)) if found > 0.0 => say(format!("{method}: {found}, but {why}")),
-                (Some(found), Answer::Elsewhere(..)) => say(format!("{method}: {found} of a motion in one well")),
+                (Some(found), Answer::Nothing(why)) if found > 0.0 => {
+                    say(format!("{method}: {found}, but {why}"))
+                }
+                (Some(found), Answer::Elsewhere(..)) => {
+                    say(format!("{method}: {found} of a motion in one well"))
+                }
                 (None, Answer::Value(expected, noise)) if expected > 0.0 && noise < 1e-3 => {
                     say(format!("{method}: nothing, not {expected}"));
                 }
                 _ => {}
             }
         }
-        // What is solved for: the equations are met, and where the true motion is well outside of the separatrix, by that motion.
+        // What is solved for: the equations are met, and where the true motion is well outside of
+        // the separatrix, by that motion.
         let order = random.choose(&[2, 3, 4]);
         if let (true, Some(degree)) = (moves, degree) {
             for method in [Method::HomotopyPerturbation, Method::ParameterExpansion] {
@@ -185,9 +218,13 @@ fn motions_over_both_wells_are_those_of_every_definition() {
                     continue;
                 };
                 compared += 1;
-                let defect = question.defect_of_homotopy(order, degree, found.frequency_squared / unit);
+                let defect =
+                    question.defect_of_homotopy(order, degree, found.frequency_squared / unit);
                 if defect.is_none_or(|defect| defect > 1e-8) {
-                    say(format!("{}: the relation is missed by {defect:?}", method.name()));
+                    say(format!(
+                        "{}: the relation is missed by {defect:?}",
+                        method.name()
+                    ));
                 }
             }
         }
@@ -195,7 +232,9 @@ fn motions_over_both_wells_are_those_of_every_definition() {
             compared += 1;
             let motion = found.motion.expect("a motion");
             let highest = *question.balanced(order).last().expect("a harmonic");
-            let coefficients: Vec<f64> = (0..=highest).map(|k| motion.cosine(k).mean().0 / length).collect();
+            let coefficients: Vec<f64> = (0..=highest)
+                .map(|k| motion.cosine(k).mean().0 / length)
+                .collect();
             let squared = found.frequency_squared / unit;
             let defect = question.defect_of_balance(squared, &coefficients, order);
             if defect.is_some_and(|defect| defect > 1e-7) {

@@ -1,11 +1,13 @@
-//! Methods that correct the motion again and again: homotopy perturbation, homotopy analysis, iteration perturbation.
+//! Methods that correct the motion again and again: homotopy perturbation, homotopy analysis,
+//! iteration perturbation.
 
 use std::f64::consts::PI;
 
 use super::definitions::{Answer, Question, series_product};
 
 impl Question<'_> {
-    /// `1 = Om + a_1 + ... + a_n` in units of the linear force: the root that continues it from rest.
+    /// `1 = Om + a_1 + ... + a_n` in units of the linear force: the root that continues it from
+    /// rest.
     pub fn homotopy_perturbation(&self, order: usize, degree: usize) -> Answer {
         let Some(g) = self.scaled_taylor(degree) else {
             return Answer::Unknown;
@@ -37,23 +39,31 @@ impl Question<'_> {
             let sizes: f64 = g[1..].iter().map(|value| (value / g[1]).abs()).sum();
             let (h, terms) = (
                 1e-6 * omega,
-                (1..=order).map(|k| (sizes / omega.abs()).powi(k as i32)).sum::<f64>(),
+                (1..=order)
+                    .map(|k| (sizes / omega.abs()).powi(k as i32))
+                    .sum::<f64>(),
             );
             let slope = (relation(1.0, omega + h) - relation(1.0, omega - h)) / (2.0 * h);
             1e2 * terms / slope.abs()
         };
         match root {
             Some(omega) => self.given(g[1] * omega, 1e3 + rounding(omega)),
-            None => Answer::Nothing("the branch from the linear frequency ends before this amplitude"),
+            None => {
+                Answer::Nothing("the branch from the linear frequency ends before this amplitude")
+            }
         }
     }
 
-    /// By how much of itself a given omega^2 misses `omega0^2 = omega^2 + a_1 + ... + a_n`, whatever the sign of the linear force.
+    /// By how much of itself a given omega^2 misses `omega0^2 = omega^2 + a_1 + ... + a_n`,
+    /// whatever the sign of the linear force.
     pub fn defect_of_homotopy(&self, order: usize, degree: usize, squared: f64) -> Option<f64> {
         let g = self.scaled_taylor(degree)?;
         let wave = Waves::for_degree(degree, order);
-        let force: Vec<f64> = (0..=degree).map(|k| if k < 2 { 0.0 } else { g[k] }).collect();
-        let relation = |omega: f64| omega + homotopy_corrections(&wave, &force, omega, order) - g[1];
+        let force: Vec<f64> = (0..=degree)
+            .map(|k| if k < 2 { 0.0 } else { g[k] })
+            .collect();
+        let relation =
+            |omega: f64| omega + homotopy_corrections(&wave, &force, omega, order) - g[1];
         let h = 1e-6 * squared;
         let slope = (relation(squared + h) - relation(squared - h)) / (2.0 * h);
         Some((relation(squared) / slope / squared).abs()).filter(|defect| defect.is_finite())
@@ -64,7 +74,10 @@ impl Question<'_> {
         let Some(g) = self.scaled_taylor(degree) else {
             return Answer::Unknown;
         };
-        let scale = g.iter().map(|value| value.abs()).fold(f64::MIN_POSITIVE, f64::max);
+        let scale = g
+            .iter()
+            .map(|value| value.abs())
+            .fold(f64::MIN_POSITIVE, f64::max);
         let g: Vec<f64> = g.iter().map(|value| value / scale).collect();
         let wave = Waves::for_degree(degree, order);
         let mut motions: Vec<Vec<f64>> = vec![wave.cosine(1)];
@@ -75,10 +88,15 @@ impl Question<'_> {
             // R_m without the frequency that it fixes.
             let forces = powers_of_series(&motions, m, &g);
             let mut right = forces[m - 1].clone();
-            let accelerations: Vec<Vec<f64>> = motions.iter().map(|motion| wave.second_derivative(motion)).collect();
+            let accelerations: Vec<Vec<f64>> = motions
+                .iter()
+                .map(|motion| wave.second_derivative(motion))
+                .collect();
             let squared = |k: usize| -> f64 {
                 (0..=k)
-                    .map(|i| frequencies.get(i).unwrap_or(&0.0) * frequencies.get(k - i).unwrap_or(&0.0))
+                    .map(|i| {
+                        frequencies.get(i).unwrap_or(&0.0) * frequencies.get(k - i).unwrap_or(&0.0)
+                    })
                     .sum()
             };
             for (j, acceleration) in accelerations.iter().enumerate().take(m) {
@@ -124,7 +142,8 @@ impl Question<'_> {
         self.given(scale * omega * omega, 1e3 * (terms + rounding) / omega)
     }
 
-    /// The second pass of iteration perturbation: no secular term in `Om x_1 - f(x_1)`, on the branch from rest.
+    /// The second pass of iteration perturbation: no secular term in `Om x_1 - f(x_1)`, on the
+    /// branch from rest.
     pub fn iteration_perturbation(&self, degree: usize) -> Answer {
         let Some(g) = self.scaled_taylor(degree) else {
             return Answer::Unknown;
@@ -144,7 +163,11 @@ impl Question<'_> {
             };
             let force = |x: &[f64]| -> Vec<f64> {
                 x.iter()
-                    .map(|&x| (1..=degree).rev().fold(0.0, |sum, k| (sum + coefficient(k)) * x))
+                    .map(|&x| {
+                        (1..=degree)
+                            .rev()
+                            .fold(0.0, |sum, k| (sum + coefficient(k)) * x)
+                    })
                     .collect()
             };
             let first = force(&start);
@@ -159,7 +182,9 @@ impl Question<'_> {
         };
         match follow(&relation, &g) {
             Some(omega) => self.given(g[1] * omega, 1e3),
-            None => Answer::Nothing("the branch from the linear frequency ends before this amplitude"),
+            None => {
+                Answer::Nothing("the branch from the linear frequency ends before this amplitude")
+            }
         }
     }
 }
@@ -194,7 +219,11 @@ impl Waves {
     }
 
     fn coefficient(&self, values: &[f64], k: usize) -> f64 {
-        let sum: f64 = values.iter().enumerate().map(|(i, value)| self.at(k, i) * value).sum();
+        let sum: f64 = values
+            .iter()
+            .enumerate()
+            .map(|(i, value)| self.at(k, i) * value)
+            .sum();
         if k == 0 {
             sum / self.points as f64
         } else {
@@ -211,7 +240,11 @@ impl Waves {
     fn second_derivative(&self, values: &[f64]) -> Vec<f64> {
         let mut result = vec![0.0; self.points];
         for k in 1..=self.highest {
-            self.add(&mut result, -((k * k) as f64) * self.coefficient(values, k), k);
+            self.add(
+                &mut result,
+                -((k * k) as f64) * self.coefficient(values, k),
+                k,
+            );
         }
         result
     }
@@ -270,7 +303,8 @@ fn homotopy_corrections(wave: &Waves, force: &[f64], omega: f64, order: usize) -
     corrections.iter().sum()
 }
 
-/// The root of `relation(part, omega)` at `part = 1` on the branch with `omega = 1` at `part = 0`; `None` where it folds back.
+/// The root of `relation(part, omega)` at `part = 1` on the branch with `omega = 1` at `part = 0`;
+/// `None` where it folds back.
 fn follow(relation: &dyn Fn(f64, f64) -> f64, g: &[f64]) -> Option<f64> {
     let strength = (2..g.len())
         .map(|k| (g[k] / g[1]).abs().powf(1.0 / (k - 1) as f64))

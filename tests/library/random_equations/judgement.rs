@@ -1,5 +1,5 @@
-//! The judge's numbers: the true frequency, errors and verdicts, the deviation of the motion, and the range within the
-//! tolerance, each against the test's own.
+//! The judge's numbers: the true frequency, errors and verdicts, the deviation of the motion, and
+//! the range within the tolerance, each against the test's own.
 
 use std::f64::consts::TAU;
 
@@ -18,8 +18,14 @@ const TOLERANCE: f64 = 0.01;
 /// Amplitudes at which a range is looked at.
 const PLACES: usize = 60;
 
-/// What is wrong with the table of all methods at `at`, whose lengths and frequencies are in these units.
-pub fn judgement(question: &Question, oscillator: &Oscillator, at: &Values, units: (f64, f64)) -> Vec<Comparison> {
+/// What is wrong with the table of all methods at `at`, whose lengths and frequencies are in these
+/// units.
+pub fn judgement(
+    question: &Question,
+    oscillator: &Oscillator,
+    at: &Values,
+    units: (f64, f64),
+) -> Vec<Comparison> {
     let truth = question.truth();
     let (squared, noise) = match truth {
         Answer::Value(squared, noise) => (squared, noise),
@@ -36,22 +42,34 @@ pub fn judgement(question: &Question, oscillator: &Oscillator, at: &Values, unit
     let Some(true_frequency) = table.true_frequency else {
         return vec![report(
             "judge",
-            table.reason.map(|reason| format!("no true motion: {reason}")),
+            table
+                .reason
+                .map(|reason| format!("no true motion: {reason}")),
         )];
     };
     let found = (true_frequency / units.1).powi(2);
     let wrong = (found / squared - 1.0).abs() > 1e-8 + noise;
-    let complaint = wrong.then(|| format!("true omega^2 = {found}, not {squared} (good to {noise:.0e})"));
-    let mut list = vec![report("judge", complaint), report("verdicts", verdicts(&table))];
+    let complaint =
+        wrong.then(|| format!("true omega^2 = {found}, not {squared} (good to {noise:.0e})"));
+    let mut list = vec![
+        report("judge", complaint),
+        report("verdicts", verdicts(&table)),
+    ];
     if wrong {
         return list;
     }
     if let Some(motion) = motion(question, squared.sqrt()) {
-        list.push(report("deviation", deviations(question, &table, &motion, units)));
+        list.push(report(
+            "deviation",
+            deviations(question, &table, &motion, units),
+        ));
     }
     list.push(report(
         "range",
-        table.rows.iter().find_map(|row| range(question, row, units.0)),
+        table
+            .rows
+            .iter()
+            .find_map(|row| range(question, row, units.0)),
     ));
     list
 }
@@ -66,14 +84,18 @@ fn verdicts(table: &Table) -> Option<String> {
         let pass = error.is_some_and(|error| error.abs() <= TOLERANCE);
         row.relative_error != error || (row.verdict == Some(Verdict::Pass)) != pass
     };
-    table
-        .rows
-        .iter()
-        .find(wrong)
-        .map(|row| format!("{}: {:?} {:?}", row.solution.title(), row.relative_error, row.verdict))
+    table.rows.iter().find(wrong).map(|row| {
+        format!(
+            "{}: {:?} {:?}",
+            row.solution.title(),
+            row.relative_error,
+            row.verdict
+        )
+    })
 }
 
-/// The true motion over a period at equal steps of time, by the classical Runge-Kutta rule; `None` where its energy drifts.
+/// The true motion over a period at equal steps of time, by the classical Runge-Kutta rule; `None`
+/// where its energy drifts.
 fn motion(question: &Question, frequency: f64) -> Option<Vec<f64>> {
     const STEPS: usize = 8192;
     let step = TAU / frequency / STEPS as f64;
@@ -94,12 +116,20 @@ fn motion(question: &Question, frequency: f64) -> Option<Vec<f64>> {
 }
 
 /// The largest deviation of `A cos(omega t)`.
-fn deviations(question: &Question, table: &Table, path: &[f64], units: (f64, f64)) -> Option<String> {
+fn deviations(
+    question: &Question,
+    table: &Table,
+    path: &[f64],
+    units: (f64, f64),
+) -> Option<String> {
     let truth = table.true_frequency? / units.1;
     let one_term = table.rows.iter().filter(|row| {
         matches!(
             row.solution.method,
-            Method::Hamiltonian | Method::EnergyBalance | Method::AmplitudeFrequency | Method::FrequencyFormula
+            Method::Hamiltonian
+                | Method::EnergyBalance
+                | Method::AmplitudeFrequency
+                | Method::FrequencyFormula
         )
     });
     one_term
@@ -112,18 +142,27 @@ fn deviations(question: &Question, table: &Table, path: &[f64], units: (f64, f64
                 .fold(0.0, f64::max);
             let expected = largest / question.amplitude.abs();
             let wrong = (found - expected).abs() > 1e-3 * expected + 1e-7;
-            wrong.then(|| format!("{}: deviation {found}, not {expected}", row.solution.title()))
+            wrong.then(|| {
+                format!(
+                    "{}: deviation {found}, not {expected}",
+                    row.solution.title()
+                )
+            })
         })
 }
 
 /// A range that skips a failure, or ends before one.
 fn range(question: &Question, row: &Row, unit: f64) -> Option<String> {
     let definition = |question: &Question| match row.solution.method {
-        Method::Hamiltonian | Method::VariationalIteration | Method::MaxMin => question.shared_integral(),
+        Method::Hamiltonian | Method::VariationalIteration | Method::MaxMin => {
+            question.shared_integral()
+        }
         Method::EnergyBalance => question.energy_balance(),
         Method::AmplitudeFrequency => question.amplitude_frequency(),
         Method::FrequencyFormula => question.frequency_formula(),
-        Method::LindstedtPoincare if row.solution.parameters.is_empty() => question.lindstedt_poincare(4),
+        Method::LindstedtPoincare if row.solution.parameters.is_empty() => {
+            question.lindstedt_poincare(4)
+        }
         Method::Pade if row.solution.parameters.is_empty() => question.pade(2, 1, None),
         _ => Answer::Unknown,
     };
@@ -169,8 +208,8 @@ fn range(question: &Question, row: &Row, unit: f64) -> Option<String> {
     let below = |error: &f64| error.abs() < 0.99 * TOLERANCE;
     // A pole of the law may spoil next to nothing, so that coarse steps pass over it.
     let close_by = || {
-        let offsets =
-            std::iter::successors(Some(1e-7), |offset| Some(1.03 * offset)).take_while(|offset| *offset < 1e-2);
+        let offsets = std::iter::successors(Some(1e-7), |offset| Some(1.03 * offset))
+            .take_while(|offset| *offset < 1e-2);
         let mut errors = offsets.filter_map(|offset| good(end * (1.0 + offset)));
         errors.all(|error| below(&error))
     };

@@ -1,10 +1,12 @@
 //! Random equations: every method compared with its definition computed another way.
 //!
-//! Each equation is made from a seed, written as text at a random scale (lengths from 1e-12 to 1e12, omega^2 from 1e-16 to
-//! 1e16) and given to the program; the answer is compared with the definition of the method, evaluated without dimensions on
-//! a tree of the test's own: projections by adaptive quadrature, Lindstedt's series by Lagrange's inversion of the energy
-//! integral, homotopies by recursion in numbers, balances by continuation from rest. Nothing is taken from the program but
-//! its parser and its answers. An answer may be a refusal or "not real" where that is right.
+//! Each equation is made from a seed, written as text at a random scale (lengths from 1e-12 to
+//! 1e12, omega^2 from 1e-16 to 1e16) and given to the program; the answer is compared with the
+//! definition of the method, evaluated without dimensions on a tree of the test's own: projections
+//! by adaptive quadrature, Lindstedt's series by Lagrange's inversion of the energy integral,
+//! homotopies by recursion in numbers, balances by continuation from rest. Nothing is taken from
+//! the program but its parser and its answers. An answer may be a refusal or "not real" where that
+//! is right.
 //!
 //! `cargo test` runs a hundred and fifty equations, some two thousand comparisons. By hand:
 //!
@@ -12,10 +14,11 @@
 //! LINDSTEDT_RANDOM_COUNT=20000 LINDSTEDT_RANDOM_SEED=1000000 cargo test --test library random_equations -- --nocapture
 //! ```
 //!
-//! `LINDSTEDT_RANDOM_FAMILY=barrier` asks for the families with this in their name, and an empty one for all; where it is set,
-//! the judge's true frequencies, deviations and ranges are looked at as well, which takes longer.
-//! Motions over two wells, through an unstable equilibrium, are compared in `hilltop.rs`.
-//! Equation number `i` comes from seed `seed + i` alone: a failure names its own seed, to be run with a count of one and the same families.
+//! `LINDSTEDT_RANDOM_FAMILY=barrier` asks for the families with this in their name, and an empty
+//! one for all; where it is set, the judge's true frequencies, deviations and ranges are looked at
+//! as well, which takes longer. Motions over two wells, through an unstable equilibrium, are
+//! compared in `hilltop.rs`. Equation number `i` comes from seed `seed + i` alone: a failure names
+//! its own seed, to be run with a count of one and the same families.
 
 mod balance;
 mod definitions;
@@ -48,11 +51,12 @@ const AGREEMENT: f64 = 1e-9;
 
 /// Seeds at which the program, or this test, was once wrong.
 const FOUND: [u64; 63] = [
-    1015149, 1006888, 1007138, 1003581, 1004387, 1005952, 1010397, 1000263, 1011981, 1012999, 1000030, 1000224,
-    1000258, 1000281, 1000337, 1000464, 1000556, 1000572, 1000576, 1000587, 1000699, 1000726, 1000782, 1000865,
-    1001033, 1001308, 1001339, 1001447, 1001611, 1001698, 1001964, 1002105, 1002301, 1002676, 1002706, 1002907,
-    1003020, 1003039, 1003059, 1003064, 1003243, 1003288, 1003381, 1003414, 1010185, 1010488, 1010590, 1010769,
-    1010893, 1010979, 1011360, 1011435, 1011480, 1011570, 1011723, 1012170, 1012249, 1012298, 1012458, 1012489,
+    1015149, 1006888, 1007138, 1003581, 1004387, 1005952, 1010397, 1000263, 1011981, 1012999,
+    1000030, 1000224, 1000258, 1000281, 1000337, 1000464, 1000556, 1000572, 1000576, 1000587,
+    1000699, 1000726, 1000782, 1000865, 1001033, 1001308, 1001339, 1001447, 1001611, 1001698,
+    1001964, 1002105, 1002301, 1002676, 1002706, 1002907, 1003020, 1003039, 1003059, 1003064,
+    1003243, 1003288, 1003381, 1003414, 1010185, 1010488, 1010590, 1010769, 1010893, 1010979,
+    1011360, 1011435, 1011480, 1011570, 1011723, 1012170, 1012249, 1012298, 1012458, 1012489,
     1012516, 1012565, 1012566,
 ];
 
@@ -69,7 +73,8 @@ struct Comparison {
     complaint: Option<String>,
 }
 
-/// The stable equilibrium nearest to zero; zero itself where the force vanishes there and pulls back.
+/// The stable equilibrium nearest to zero; zero itself where the force vanishes there and pulls
+/// back.
 fn equilibrium(case: &Case) -> Option<f64> {
     let force = &case.force;
     if force.value(0.0) == 0.0 {
@@ -109,13 +114,21 @@ fn variants(case: &Case, question: &Question, random: &mut Random) -> Vec<(Optio
         (of(Method::IterationPerturbation, None), shared, true),
         (of(Method::ParameterExpansion, Some(1)), shared, true),
         (of(Method::MaxMin, None), shared, odd && bounded),
-        (of(Method::EnergyBalance, None), question.energy_balance(), odd),
+        (
+            of(Method::EnergyBalance, None),
+            question.energy_balance(),
+            odd,
+        ),
         (
             of(Method::AmplitudeFrequency, None),
             question.amplitude_frequency(),
             odd,
         ),
-        (of(Method::FrequencyFormula, None), question.frequency_formula(), odd),
+        (
+            of(Method::FrequencyFormula, None),
+            question.frequency_formula(),
+            odd,
+        ),
         (of(Method::Exact, None), question.truth(), true),
     ];
     // In a parameter, the power of the amplitude follows from that of the parameter.
@@ -136,7 +149,11 @@ fn variants(case: &Case, question: &Question, random: &mut Random) -> Vec<(Optio
     } else {
         Answer::Unknown
     };
-    list.push((of(Method::LindstedtPoincare, Some(order as u32)), series, linear));
+    list.push((
+        of(Method::LindstedtPoincare, Some(order as u32)),
+        series,
+        linear,
+    ));
     let (above, below) = random.choose(&[(1, 1), (2, 1), (2, 2), (3, 2)]);
     let pade = Options {
         degrees: Some(Degrees::Quotient(above as u32, below as u32)),
@@ -156,7 +173,11 @@ fn variants(case: &Case, question: &Question, random: &mut Random) -> Vec<(Optio
     } else {
         Answer::Unknown
     };
-    list.push((of(Method::HomotopyPerturbation, Some(order as u32)), homotopy, linear));
+    list.push((
+        of(Method::HomotopyPerturbation, Some(order as u32)),
+        homotopy,
+        linear,
+    ));
     let order = random.choose(&[1, 2, 3]);
     let degree = force.degree().unwrap_or(2 * order + 1);
     let hbar = Options {
@@ -197,7 +218,11 @@ fn run(seed: u64) -> (Case, String, Vec<Comparison>) {
         let given = values
             .iter()
             .map(|(name, value)| format!(" --at {name}={}", value.text()));
-        format!("\"{text}\" --at A={}{}", amplitude.text(), given.collect::<String>())
+        format!(
+            "\"{text}\" --at A={}{}",
+            amplitude.text(),
+            given.collect::<String>()
+        )
     };
     let mut comparisons = Vec::new();
     let oscillator = match Oscillator::parse(&text) {
@@ -242,15 +267,20 @@ fn run(seed: u64) -> (Case, String, Vec<Comparison>) {
     for (options, expected, applies) in variants(&case, &question, &mut random) {
         let method = options.method.expect("a method");
         let named = |complaint: String| {
-            let order = options.order.map_or(String::new(), |order| format!(" --order {order}"));
-            let degrees = options
-                .degrees
-                .map_or(String::new(), |degrees| format!(" --order {}", degrees.separated()));
+            let order = options
+                .order
+                .map_or(String::new(), |order| format!(" --order {order}"));
+            let degrees = options.degrees.map_or(String::new(), |degrees| {
+                format!(" --order {}", degrees.separated())
+            });
             let hbar = options
                 .hbar
                 .as_ref()
                 .map_or(String::new(), |hbar| format!(" --hbar {hbar}"));
-            format!("--method {}{order}{degrees}{hbar}: {complaint}", method.name())
+            format!(
+                "--method {}{order}{degrees}{hbar}: {complaint}",
+                method.name()
+            )
         };
         let complaint = match solve(&oscillator, &options) {
             Err(Refusal::TooLong { .. }) => None,
@@ -260,13 +290,16 @@ fn run(seed: u64) -> (Case, String, Vec<Comparison>) {
             }),
             Ok(solution) => {
                 let found = numbers::evaluate(&oscillator, &solution, &numbers);
-                // Coefficients about an equilibrium that is no fraction are rounded: where their terms cancel to less than
-                // six digits an answer is refused, and before that it says how many are lost.
+                // Coefficients about an equilibrium that is no fraction are rounded: where their
+                // terms cancel to less than six digits an answer is refused, and before that it
+                // says how many are lost.
                 let expected = match (&found, expected) {
                     (Err(NoNumbers::Cancels { .. }), _) if origin != 0.0 => Answer::Unknown,
                     // A balance about several wells says so, and is no branch from rest.
                     (Ok(found), _) if found.remark.is_some() => Answer::Unknown,
-                    (Ok(found), Answer::Value(squared, noise)) => Answer::Value(squared, noise + found.rounding),
+                    (Ok(found), Answer::Value(squared, noise)) => {
+                        Answer::Value(squared, noise + found.rounding)
+                    }
                     (_, expected) => expected,
                 };
                 let found = found.ok().filter(|found| found.frequency_squared > 0.0);
@@ -279,13 +312,15 @@ fn run(seed: u64) -> (Case, String, Vec<Comparison>) {
                     let (motion, squared) = (motion?, squared?);
                     let order = solution.order as usize;
                     let highest = *question.balanced(order).last()?;
-                    let mut coefficients: Vec<f64> =
-                        (0..=highest).map(|k| motion.cosine(k).mean().0 / length).collect();
+                    let mut coefficients: Vec<f64> = (0..=highest)
+                        .map(|k| motion.cosine(k).mean().0 / length)
+                        .collect();
                     coefficients[0] -= question.origin;
                     let defect = question.defect_of_balance(squared, &coefficients, order)?;
                     let rounding = 1e-13 * (1.0 + question.origin.abs() / question.size());
                     let noise = rounding * (1.0 + question.noise(question.amplitude));
-                    (defect > 1e-7 + noise).then(|| format!("the harmonics are out of balance by {defect:.1e}"))
+                    (defect > 1e-7 + noise)
+                        .then(|| format!("the harmonics are out of balance by {defect:.1e}"))
                 })
             }
         };
@@ -319,7 +354,11 @@ fn judged(found: Option<f64>, expected: Answer) -> Option<String> {
         (None, Answer::Elsewhere(..)) => None,
         (Some(found), Answer::Value(squared, noise) | Answer::Elsewhere(squared, noise)) => {
             let agrees = (found / squared - 1.0).abs() <= AGREEMENT + noise;
-            (!agrees).then(|| format!("omega^2 = {found}, but the definition gives {squared} (good to {noise:.0e})"))
+            (!agrees).then(|| {
+                format!(
+                    "omega^2 = {found}, but the definition gives {squared} (good to {noise:.0e})"
+                )
+            })
         }
     }
 }
@@ -364,8 +403,14 @@ fn motions_with_velocities_are_judged_rightly() {
     let questions = [velocities::limit_cycle, velocities::inertia];
     let complaints: Vec<String> = (first..first + count)
         .flat_map(|seed| questions.map(|question| (seed, question(&mut Random::new(seed)))))
-        .filter_map(|(seed, (described, complaint))| Some(format!("seed {seed}: {described}: {}", complaint?)))
+        .filter_map(|(seed, (described, complaint))| {
+            Some(format!("seed {seed}: {described}: {}", complaint?))
+        })
         .collect();
-    println!("{} motions with velocities, {} complaints", 2 * count, complaints.len());
+    println!(
+        "{} motions with velocities, {} complaints",
+        2 * count,
+        complaints.len()
+    );
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }

@@ -9,7 +9,8 @@ use super::quadrature::{Integrals, bisect, integrate};
 pub struct Unsettled;
 
 impl Question<'_> {
-    /// The true frequency, squared: twice the time between the turning points, by the energy integral.
+    /// The true frequency, squared: twice the time between the turning points, by the energy
+    /// integral.
     pub fn truth(&self) -> Answer {
         let start = self.amplitude;
         if self.waves() > 300.0 {
@@ -37,7 +38,11 @@ impl Question<'_> {
             } else {
                 left + radius * far
             };
-            let rise = if phi >= 0.0 { work.beyond(y) } else { -work.up_to(y) };
+            let rise = if phi >= 0.0 {
+                work.beyond(y)
+            } else {
+                -work.up_to(y)
+            };
             (near * far * radius * radius / (2.0 * rise)).sqrt()
         };
         let mut angles: Vec<f64> = vec![-FRAC_PI_2, -0.8, 0.0, 0.8, FRAC_PI_2];
@@ -50,9 +55,10 @@ impl Question<'_> {
         match integrate(&time, &angles, 1e-12) {
             Some(half) => {
                 let omega = TAU / (2.0 * half);
-                let rounding =
-                    self.noise(start).max(self.noise(end)) + start.abs().max(end.abs()) / (start - end).abs();
-                // Pushed away at first, or turned back before the equilibrium: a motion of another well.
+                let rounding = self.noise(start).max(self.noise(end))
+                    + start.abs().max(end.abs()) / (start - end).abs();
+                // Pushed away at first, or turned back before the equilibrium: a motion of another
+                // well.
                 let elsewhere = start * self.f(start) < 0.0 || start * end > 0.0;
                 match self.given(omega * omega, 1e4 + 10.0 * rounding) {
                     Answer::Value(squared, noise) if elsewhere => Answer::Elsewhere(squared, noise),
@@ -77,8 +83,8 @@ impl Question<'_> {
         stops
     }
 
-    /// To how many digits the work of the force can be summed: about an equilibrium that is no fraction, small distances are
-    /// differences.
+    /// To how many digits the work of the force can be summed: about an equilibrium that is no
+    /// fraction, small distances are differences.
     fn precision(&self) -> f64 {
         match self.origin == 0.0 {
             true => 1e-16,
@@ -102,10 +108,18 @@ impl Question<'_> {
         if self.is_odd() && side == start.signum() {
             // By symmetry, if nothing is in the way: the energy stays positive in between.
             let size = self.size();
-            let work = Integrals::new(&force, &self.stops(0.0, size), self.precision()).ok_or(Unsettled)?;
+            let work = Integrals::new(&force, &self.stops(0.0, size), self.precision())
+                .ok_or(Unsettled)?;
             let mut places: Vec<f64> = (0..1000).map(|k| size * f64::from(k) / 1000.0).collect();
-            places.extend(self.stops(0.0, size).into_iter().filter(|place| *place < size));
-            return Ok(places.iter().all(|y| work.beyond(*y) > 0.0).then_some(-start));
+            places.extend(
+                self.stops(0.0, size)
+                    .into_iter()
+                    .filter(|place| *place < size),
+            );
+            return Ok(places
+                .iter()
+                .all(|y| work.beyond(*y) > 0.0)
+                .then_some(-start));
         }
         let work = |from: f64, to: f64| -> f64 {
             let stops = self.stops(from.min(to), from.max(to));
@@ -127,7 +141,9 @@ impl Question<'_> {
         for _ in 0..6000 {
             let step = (0.01 * start.abs()).max(0.01 * travelled);
             let mut next = y - side * step;
-            if let Some(stop) = stops.iter().find(|stop| side * **stop < side * y - 1e-12 * start.abs())
+            if let Some(stop) = stops
+                .iter()
+                .find(|stop| side * **stop < side * y - 1e-12 * start.abs())
                 && side * next < side * stop
             {
                 next = *stop;

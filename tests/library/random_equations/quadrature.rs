@@ -1,4 +1,5 @@
-//! Integrals by Gauss and Legendre on panels that are halved until they agree; roots by bisection; linear equations.
+//! Integrals by Gauss and Legendre on panels that are halved until they agree; roots by bisection;
+//! linear equations.
 
 use std::sync::OnceLock;
 
@@ -14,7 +15,8 @@ fn nodes_and_weights() -> &'static [(f64, f64)] {
             for _ in 0..20 {
                 let (mut before, mut value) = (1.0, x);
                 for n in 1..NODES {
-                    let next = ((2 * n + 1) as f64 * x * value - n as f64 * before) / (n + 1) as f64;
+                    let next =
+                        ((2 * n + 1) as f64 * x * value - n as f64 * before) / (n + 1) as f64;
                     (before, value) = (value, next);
                 }
                 slope = NODES as f64 * (x * value - before) / (x * x - 1.0);
@@ -38,7 +40,8 @@ fn panel(f: &dyn Fn(f64) -> f64, from: f64, to: f64) -> (f64, f64) {
     (sum * half, size * half.abs())
 }
 
-/// Panels from the first to the last of `places`, ascending, on each of which one rule is as good as two on its halves.
+/// Panels from the first to the last of `places`, ascending, on each of which one rule is as good
+/// as two on its halves.
 fn panels(f: &dyn Fn(f64) -> f64, places: &[f64], tolerance: f64) -> Option<Vec<(f64, f64, f64)>> {
     const MOST: usize = 4000;
     let mut open: Vec<(f64, f64, (f64, f64), u32)> = places
@@ -58,7 +61,11 @@ fn panels(f: &dyn Fn(f64) -> f64, places: &[f64], tolerance: f64) -> Option<Vec<
         if !change.is_finite() || depth > 60 || open.len() + done.len() > MOST {
             return None;
         }
-        if change <= tolerance * size || change <= 16.0 * f64::EPSILON * here || middle == from || middle == to {
+        if change <= tolerance * size
+            || change <= 16.0 * f64::EPSILON * here
+            || middle == from
+            || middle == to
+        {
             done.push((from, to, left.0 + right.0));
         } else {
             open.push((middle, to, right, depth + 1));
@@ -68,10 +75,16 @@ fn panels(f: &dyn Fn(f64) -> f64, places: &[f64], tolerance: f64) -> Option<Vec<
     Some(done)
 }
 
-/// The integral from the first to the last of `places`, which are ascending and hold every place where `f` may turn fast;
-/// `None` where it does not settle to `tolerance` of the integral of `|f|`.
+/// The integral from the first to the last of `places`, which are ascending and hold every place
+/// where `f` may turn fast; `None` where it does not settle to `tolerance` of the integral of
+/// `|f|`.
 pub fn integrate(f: &dyn Fn(f64) -> f64, places: &[f64], tolerance: f64) -> Option<f64> {
-    Some(panels(f, places, tolerance)?.iter().map(|panel| panel.2).sum())
+    Some(
+        panels(f, places, tolerance)?
+            .iter()
+            .map(|panel| panel.2)
+            .sum(),
+    )
 }
 
 /// The integrals of one function from any place to either end of an interval.
@@ -142,7 +155,8 @@ pub fn bisect(f: &dyn Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// The solution of linear equations by elimination with the largest pivot; `None` where they are singular to rounding.
+/// The solution of linear equations by elimination with the largest pivot; `None` where they are
+/// singular to rounding.
 pub fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     let count = rows.len();
     for column in 0..count {

@@ -1,6 +1,7 @@
 //! A small generator of random numbers, the same on every machine.
 //!
-//! Reference: G. L. Steele, D. Lea, C. H. Flood, *Fast splittable pseudorandom number generators*, OOPSLA 2014 (SplitMix64).
+//! Reference: G. L. Steele, D. Lea, C. H. Flood, *Fast splittable pseudorandom number generators*,
+//! OOPSLA 2014 (SplitMix64).
 
 /// The state of SplitMix64.
 pub struct Random(u64);

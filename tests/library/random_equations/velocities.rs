@@ -12,12 +12,24 @@ use super::families::number;
 use super::quadrature::{bisect, integrate};
 use super::random::Random;
 
-/// One period of `x'' = acceleration(x, x')` between two maxima, and the maximum, after the transient has gone.
-fn cycle(acceleration: &dyn Fn(f64, f64) -> f64, start: f64, step: f64, transient: f64) -> Option<(f64, f64)> {
+/// One period of `x'' = acceleration(x, x')` between two maxima, and the maximum, after the
+/// transient has gone.
+fn cycle(
+    acceleration: &dyn Fn(f64, f64) -> f64,
+    start: f64,
+    step: f64,
+    transient: f64,
+) -> Option<(f64, f64)> {
     let rule = |x: f64, v: f64, h: f64| {
         let (x1, v1) = (v, acceleration(x, v));
-        let (x2, v2) = (v + 0.5 * h * v1, acceleration(x + 0.5 * h * x1, v + 0.5 * h * v1));
-        let (x3, v3) = (v + 0.5 * h * v2, acceleration(x + 0.5 * h * x2, v + 0.5 * h * v2));
+        let (x2, v2) = (
+            v + 0.5 * h * v1,
+            acceleration(x + 0.5 * h * x1, v + 0.5 * h * v1),
+        );
+        let (x3, v3) = (
+            v + 0.5 * h * v2,
+            acceleration(x + 0.5 * h * x2, v + 0.5 * h * v2),
+        );
         let (x4, v4) = (v + h * v3, acceleration(x + h * x3, v + h * v3));
         (
             x + h / 6.0 * (x1 + 2.0 * x2 + 2.0 * x3 + x4),
@@ -45,8 +57,9 @@ fn cycle(acceleration: &dyn Fn(f64, f64) -> f64, start: f64, step: f64, transien
     None
 }
 
-/// `x'' - mu (1 - b x^2 - c x^4) x' + k x = 0`: the cycle's amplitude to first order from the balance of energy, its true
-/// frequency by a long run, and the exponent with which the error of the series vanishes.
+/// `x'' - mu (1 - b x^2 - c x^4) x' + k x = 0`: the cycle's amplitude to first order from the
+/// balance of energy, its true frequency by a long run, and the exponent with which the error of
+/// the series vanishes.
 pub fn limit_cycle(random: &mut Random) -> (String, Option<String>) {
     let b = number(random.between(0.3, 3.0));
     let c = number(random.between(0.1, 2.0));
@@ -89,7 +102,9 @@ pub fn limit_cycle(random: &mut Random) -> (String, Option<String>) {
         found => {
             return (
                 described,
-                Some(format!("amplitude {found:?}, but the energy is balanced at {first}")),
+                Some(format!(
+                    "amplitude {found:?}, but the energy is balanced at {first}"
+                )),
             );
         }
     }
@@ -114,9 +129,13 @@ pub fn limit_cycle(random: &mut Random) -> (String, Option<String>) {
     (described, complaint)
 }
 
-/// `(1 + c x^2) x'' + c x x'^2 + k x + b x^3 = 0`, whose energy is `(1 + c x^2) x'^2/2 + k x^2/2 + b x^4/4`.
+/// `(1 + c x^2) x'' + c x x'^2 + k x + b x^3 = 0`, whose energy is
+/// `(1 + c x^2) x'^2/2 + k x^2/2 + b x^4/4`.
 pub fn inertia(random: &mut Random) -> (String, Option<String>) {
-    let (c, k) = (number(random.between(0.1, 3.0)), number(random.between(0.2, 5.0)));
+    let (c, k) = (
+        number(random.between(0.1, 3.0)),
+        number(random.between(0.2, 5.0)),
+    );
     let b = number(random.between(0.1, 3.0));
     let cubic = random.percent(50.0);
     let b_value = if cubic { b.value() } else { 0.0 };
@@ -151,10 +170,16 @@ pub fn inertia(random: &mut Random) -> (String, Option<String>) {
         values
             .insert("A".into(), amplitude.text().parse().expect("a number"))
             .expect("one value");
-        // A law that is negative at this amplitude has no motion to judge: the true one beside the exact law is the same.
-        let at_amplitude = |symbol: Symbol| (symbol == Symbol::new("A")).then_some(amplitude.value());
-        let squared = solution.frequency_squared_at(&at_amplitude).ok_or("no law")?;
-        let judged = |solution: &Solution| motions(&oscillator, solution, &values).map_err(|error| error.to_string());
+        // A law that is negative at this amplitude has no motion to judge: the true one beside the
+        // exact law is the same.
+        let at_amplitude =
+            |symbol: Symbol| (symbol == Symbol::new("A")).then_some(amplitude.value());
+        let squared = solution
+            .frequency_squared_at(&at_amplitude)
+            .ok_or("no law")?;
+        let judged = |solution: &Solution| {
+            motions(&oscillator, solution, &values).map_err(|error| error.to_string())
+        };
         let motions = match (judged(&solution)?, squared > 0.0) {
             (Some(motions), true) => motions,
             (None, false) => {
@@ -165,7 +190,12 @@ pub fn inertia(random: &mut Random) -> (String, Option<String>) {
                 let exact = solve(&oscillator, &options).map_err(|error| error.to_string())?;
                 judged(&exact)?.ok_or("the exact omega is not real")?
             }
-            (motions, _) => return Err(format!("motion: {}, omega^2 = {squared}", motions.is_some())),
+            (motions, _) => {
+                return Err(format!(
+                    "motion: {}, omega^2 = {squared}",
+                    motions.is_some()
+                ));
+            }
         };
         let period = motions.truth.last().ok_or("no motion")?.0;
         // The error of a series through A^4 vanishes like A^6.
@@ -185,7 +215,8 @@ pub fn inertia(random: &mut Random) -> (String, Option<String>) {
             if (frequency / expected - 1.0).abs() > 1e-9 {
                 Some(format!("true omega = {frequency}, not {expected}"))
             } else {
-                (slope < 5.5).then(|| format!("the error of order 4 vanishes like A^{slope:.2}, not A^6"))
+                (slope < 5.5)
+                    .then(|| format!("the error of order 4 vanishes like A^{slope:.2}, not A^6"))
             }
         }
     };

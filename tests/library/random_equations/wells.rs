@@ -1,5 +1,5 @@
-//! Where the motion of a random equation ends, and its series: the separatrix and the radius of convergence, both known from
-//! how the equation was made.
+//! Where the motion of a random equation ends, and its series: the separatrix and the radius of
+//! convergence, both known from how the equation was made.
 //!
 //! ```text
 //! f = k x (1 + x/a) (1 - x/b) (1 + c x^2)    rims at -a and b; over the lower one the motion leaves on both sides
@@ -32,13 +32,22 @@ const EACH: u64 = 12;
 
 /// The amplitudes at which the well ends on either side, asked from an amplitude inside.
 fn ends(text: &str, equilibrium: &str, amplitude: f64) -> Option<[Option<End>; 2]> {
-    let [force, equilibrium]: [Expr; 2] = [text, equilibrium].map(|text| text.parse().expect("an expression"));
-    let force = Force::new(&force, "x".into(), &equilibrium, &BTreeMap::new(), amplitude).expect("a force");
+    let [force, equilibrium]: [Expr; 2] =
+        [text, equilibrium].map(|text| text.parse().expect("an expression"));
+    let force = Force::new(
+        &force,
+        "x".into(),
+        &equilibrium,
+        &BTreeMap::new(),
+        amplitude,
+    )
+    .expect("a force");
     let well = Well::new(&force, amplitude)?;
     Some([well.low, well.high])
 }
 
-/// A well whose potential above its bottom is `rise`, between rims at these distances: where motions end on either side.
+/// A well whose potential above its bottom is `rise`, between rims at these distances: where
+/// motions end on either side.
 fn truth(rise: &dyn Fn(f64) -> f64, low: f64, high: f64) -> [f64; 2] {
     let (left, right) = (rise(low), rise(high));
     match left < right {
@@ -50,7 +59,8 @@ fn truth(rise: &dyn Fn(f64) -> f64, low: f64, high: f64) -> [f64; 2] {
 fn hold(text: &str, equilibrium: &str, expected: [f64; 2], random: &mut Random) {
     for side in 0..2 {
         let amplitude = expected[side] * random.between(0.01, 0.99);
-        let found = ends(text, equilibrium, amplitude).unwrap_or_else(|| panic!("{text}: no end from {amplitude:e}"));
+        let found = ends(text, equilibrium, amplitude)
+            .unwrap_or_else(|| panic!("{text}: no end from {amplitude:e}"));
         for (found, expected) in found.iter().zip(expected) {
             let found = found.map_or(f64::INFINITY, |end| end.amplitude);
             assert!(
@@ -65,7 +75,10 @@ fn hold(text: &str, equilibrium: &str, expected: [f64; 2], random: &mut Random) 
 fn separatrices_are_where_the_equation_was_made_to_have_them() {
     for seed in 0..EACH {
         let random = &mut Random::new(seed);
-        let (unit, k) = (10.0_f64.powi(random.whole(-12, 12) as i32), random.between(1e-16, 1e16));
+        let (unit, k) = (
+            10.0_f64.powi(random.whole(-12, 12) as i32),
+            random.between(1e-16, 1e16),
+        );
         let [a, b] = [0, 1].map(|_| unit * random.between(0.3, 3.0));
         let c = random.choose(&[0.0, 1.0]) * random.between(0.1, 10.0) / (unit * unit);
         let text = format!("{k:e}*x*(1 + x/{a:e})*(1 - x/{b:e})*(1 + {c:e}*x^2)");
@@ -100,11 +113,19 @@ fn separatrices_are_where_the_equation_was_made_to_have_them() {
 
         let side = random.choose(&[-1.0, 1.0]);
         let pole = side * unit * random.between(0.3, 3.0);
-        let found = ends(&format!("{k:e}*x/(1 - x/({pole:e}))^2"), "0", 0.4 * pole).expect("an end");
-        let [low, high] = if side > 0.0 { found } else { [found[1], found[0]] };
+        let found =
+            ends(&format!("{k:e}*x/(1 - x/({pole:e}))^2"), "0", 0.4 * pole).expect("an end");
+        let [low, high] = if side > 0.0 {
+            found
+        } else {
+            [found[1], found[0]]
+        };
         let end = high.expect("an end");
         assert!(low.is_none() && !end.rim.separatrix, "{pole:e}: {low:?}");
-        assert!((end.amplitude / pole - 1.0).abs() < 1e-6, "{end:?}, not {pole:e}");
+        assert!(
+            (end.amplitude / pole - 1.0).abs() < 1e-6,
+            "{end:?}, not {pole:e}"
+        );
     }
 }
 
@@ -120,11 +141,13 @@ fn stated(equation: &str, amplitude: f64) -> Option<(f64, f64)> {
     let mut at = Values::default();
     let value = format!("{amplitude:e}").parse().expect("a number");
     at.insert(Symbol::new("A"), value).expect("a value");
-    let verification = judge(&oscillator, &solution, &at, 0.01).unwrap_or_else(|error| panic!("{equation}: {error}"));
-    let text = verification
-        .ranges
-        .iter()
-        .find_map(|range| range.text.strip_prefix("the series converges for |A| < about "))?;
+    let verification = judge(&oscillator, &solution, &at, 0.01)
+        .unwrap_or_else(|error| panic!("{equation}: {error}"));
+    let text = verification.ranges.iter().find_map(|range| {
+        range
+            .text
+            .strip_prefix("the series converges for |A| < about ")
+    })?;
     let radius = text.split(':').next()?.parse().ok()?;
     let place = text.rsplit(" = ").next()?;
     let angle = match place.split_once(" e^(+-") {
@@ -140,7 +163,10 @@ fn radii_of_convergence_are_where_the_equation_was_made_to_have_them() {
     let mut said = [0; 5];
     for seed in 0..EACH {
         let random = &mut Random::new(1000 + seed);
-        let (unit, k) = (10.0_f64.powi(random.whole(-12, 12) as i32), random.between(1e-16, 1e16));
+        let (unit, k) = (
+            10.0_f64.powi(random.whole(-12, 12) as i32),
+            random.between(1e-16, 1e16),
+        );
         let sign = random.choose(&[-1.0, 1.0]);
         let size = random.between(0.1, 10.0);
         let (c, n) = (sign * k * size, random.whole(1, 3) as i32);
@@ -157,13 +183,25 @@ fn radii_of_convergence_are_where_the_equation_was_made_to_have_them() {
                 unit / size.sqrt(),
                 Some(of_sign),
             ),
-            (format!("{k:e}*x + {:e}*x^{}", c * power(2 * n), 2 * n + 1), zero, None),
             (
-                format!("{k:e}*x + {:e}*x^3 + {:e}*x^5", k * pair * power(2), k * d * power(4)),
+                format!("{k:e}*x + {:e}*x^{}", c * power(2 * n), 2 * n + 1),
+                zero,
+                None,
+            ),
+            (
+                format!(
+                    "{k:e}*x + {:e}*x^3 + {:e}*x^5",
+                    k * pair * power(2),
+                    k * d * power(4)
+                ),
                 unit * d.powf(-0.25),
                 Some(turn),
             ),
-            (format!("{k:e}*x + {:e}*x^2", c * power(1)), unit / (2.0 * size), None),
+            (
+                format!("{k:e}*x + {:e}*x^2", c * power(1)),
+                unit / (2.0 * size),
+                None,
+            ),
             (format!("{k:e}*sin({wave:e}*x)"), PI / wave, Some(0.0)),
         ];
         for (number, (force, radius, angle)) in cases.into_iter().enumerate() {
@@ -179,12 +217,19 @@ fn radii_of_convergence_are_where_the_equation_was_made_to_have_them() {
                 found.0
             );
             if let Some(angle) = angle {
-                assert!((found.1 - angle).abs() < 0.05, "{equation}: {}, not {angle}", found.1);
+                assert!(
+                    (found.1 - angle).abs() < 0.05,
+                    "{equation}: {}, not {angle}",
+                    found.1
+                );
             }
         }
     }
     // Where nothing can be told nothing is said, but not everywhere.
-    assert!(said[0] == EACH && said[3] == EACH && said[4] == EACH, "{said:?}");
+    assert!(
+        said[0] == EACH && said[3] == EACH && said[4] == EACH,
+        "{said:?}"
+    );
     assert!(said[1] >= EACH / 4 && said[2] >= EACH / 4, "{said:?}");
 }
 
@@ -193,7 +238,8 @@ fn known_singularities_are_read_off_their_series() {
     let mut said = 0;
     for seed in 0..200 {
         let random = &mut Random::new(2000 + seed);
-        // Two dozen coefficients tell a pair from a single place where it turns by more than pi/24 from one to the next.
+        // Two dozen coefficients tell a pair from a single place where it turns by more than pi/24
+        // from one to the next.
         let between = random.whole(150, 2990) as f64 / 1000.0;
         let angle = random.choose(&[0.0, PI, between, between]);
         let radius = random.between(1e-3, 1e3);
@@ -203,7 +249,11 @@ fn known_singularities_are_read_off_their_series() {
         for k in 2..26 {
             let k = f64::from(k);
             let [before, last] = [series[series.len() - 2], series[series.len() - 1]];
-            series.push((2.0 * (k + exponent - 1.0) * angle.cos() * last - (k + 2.0 * exponent - 2.0) * before) / k);
+            series.push(
+                (2.0 * (k + exponent - 1.0) * angle.cos() * last
+                    - (k + 2.0 * exponent - 2.0) * before)
+                    / k,
+            );
         }
         // Something that is regular up to three times as far, and another unit.
         let far = radius.recip() / 3.0;

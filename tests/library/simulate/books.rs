@@ -8,8 +8,8 @@ use super::taylor;
 proptest! {
     #![proptest_config(ProptestConfig { cases: 256, ..ProptestConfig::default() })]
 
-    /// Whatever the parameters: the energy is accounted for, impacts follow each other, no contact gains energy, and
-    /// away from the barriers the motion is never beyond them.
+    /// Whatever the parameters: the energy is accounted for, impacts follow each other, no contact
+    /// gains energy, and away from the barriers the motion is never beyond them.
     #[test]
     fn every_motion_keeps_its_books(
         zeta in 0.0..0.2_f64,

@@ -7,9 +7,13 @@ use super::{REST, run, taylor};
 
 #[test]
 fn restitution_of_hunt_and_crossley() {
-    // lambda v (1 + e) = ln((1 + lambda v)/(1 - lambda e v)), whatever the stiffness: without gravity, which a hard
-    // contact does not notice.
-    for (lambda_v, expected) in [(0.1, 0.937_475_580), (0.3, 0.832_869_792), (1.0, 0.593_624_260)] {
+    // lambda v (1 + e) = ln((1 + lambda v)/(1 - lambda e v)), whatever the stiffness: without
+    // gravity, which a hard contact does not notice.
+    for (lambda_v, expected) in [
+        (0.1, 0.937_475_580),
+        (0.3, 0.832_869_792),
+        (1.0, 0.593_624_260),
+    ] {
         let gamma = 1e12;
         let speed = 1.0;
         let model = Model {
@@ -55,7 +59,11 @@ fn the_contact_never_pulls() {
     );
     assert!(motion.difference(&judge, 2001).displacement < 1e-8);
     assert!(motion.energy().residual < 1e-9, "{:?}", motion.energy());
-    for impact in motion.impacts.iter().filter(|impact| impact.exit_time.is_some()) {
+    for impact in motion
+        .impacts
+        .iter()
+        .filter(|impact| impact.exit_time.is_some())
+    {
         let out = impact.speed_out.expect("left");
         assert!(out > 0.0 && out < impact.speed_in);
     }
@@ -70,12 +78,23 @@ fn it_settles_on_a_barrier_that_it_leans_on() {
         right: Some(-0.3),
         ..Model::default()
     };
-    for start in [REST, Start { x: -0.3, velocity: 0.0 }] {
+    for start in [
+        REST,
+        Start {
+            x: -0.3,
+            velocity: 0.0,
+        },
+    ] {
         let motion = taylor(&model, start, 1e-10, 200.0);
         assert_eq!(motion.stop, Stop::Duration, "{}", motion.stop);
         // Gravity against the barrier: sin(0.3 - d) = gamma d^(3/2).
-        let depth = find_root(|d| (0.3 - d).sin() - model.gamma * d.powf(1.5), 0.0, 0.3).expect("a depth");
-        assert!((motion.end_x + 0.3 - depth).abs() < 1e-7, "{}", motion.end_x);
+        let depth =
+            find_root(|d| (0.3 - d).sin() - model.gamma * d.powf(1.5), 0.0, 0.3).expect("a depth");
+        assert!(
+            (motion.end_x + 0.3 - depth).abs() < 1e-7,
+            "{}",
+            motion.end_x
+        );
         assert!(motion.impacts.last().expect("contact").exit_time.is_none());
         assert!(motion.energy().residual < 1e-9);
     }
@@ -108,8 +127,8 @@ fn no_barrier_is_certain_only_where_the_energy_does_not_reach_it() {
     }
 }
 
-/// A run that is to end within a contact ends there, however near to the release: the step that reaches beyond the release, where time
-/// would run backwards, must not hide it.
+/// A run that is to end within a contact ends there, however near to the release: the step that
+/// reaches beyond the release, where time would run backwards, must not hide it.
 #[test]
 fn a_run_ends_on_time_next_to_a_release() {
     for (gamma, mu) in [(1e6, 0.0), (1e6, 1e4), (300.0, 50.0)] {

@@ -1,5 +1,6 @@
-//! Equation (7) as anybody would write it down, followed by the integrator of any first-order equations: flight in time, contact
-//! in w with x = x_c + w^2 and dt = w ds, each from its event to the next.
+//! Equation (7) as anybody would write it down, followed by the integrator of any first-order
+//! equations: flight in time, contact in w with x = x_c + w^2 and dt = w ds, each from its event to
+//! the next.
 
 use lindstedt::expr::parse_expression;
 use lindstedt::impact::{Friction, Model, Regime, Side, Start};
@@ -33,7 +34,10 @@ fn friction(model: &Model) -> &'static str {
 /// The equations of flight, and those of contact in the mirror of a side.
 fn equations(model: &Model, side: Option<Side>) -> System {
     let (sign, barrier) = match side {
-        Some(side) => (side.sign(), side.sign() * model.barrier(side).expect("a barrier")),
+        Some(side) => (
+            side.sign(),
+            side.sign() * model.barrier(side).expect("a barrier"),
+        ),
         None => (1.0, 0.0),
     };
     let numbers = [
@@ -81,7 +85,8 @@ fn follow(model: &Model, start: Start, duration: f64) -> (Vec<Piece>, Vec<Contac
     let (mut pieces, mut contacts) = (vec![], vec![]);
     let (mut t, mut x, mut v) = (0.0, start.x, start.velocity);
     loop {
-        let [right, left] = [Side::Right, Side::Left].map(|side| model.barrier(side).expect("a barrier"));
+        let [right, left] =
+            [Side::Right, Side::Left].map(|side| model.barrier(side).expect("a barrier"));
         let barriers = [right, left].map(|barrier| stop(format!("x - ({barrier:?})")));
         let flight = equations(model, None);
         let path = flight
@@ -143,7 +148,9 @@ fn follow(model: &Model, start: Start, duration: f64) -> (Vec<Piece>, Vec<Contac
 
 /// Displacement and velocity at a time.
 fn at(pieces: &[Piece], model: &Model, time: f64) -> Option<[f64; 2]> {
-    let piece = pieces.iter().find(|piece| (piece.from..=piece.to).contains(&time))?;
+    let piece = pieces
+        .iter()
+        .find(|piece| (piece.from..=piece.to).contains(&time))?;
     let Some(side) = piece.contact else {
         let state = piece.path.at(time)?;
         return Some([state[0], state[1]]);
@@ -231,8 +238,15 @@ fn the_special_integrator_and_that_of_any_equations_agree() {
             ];
             let [entry, exit] = contact.times;
             let [speed_in, speed_out] = contact.speeds;
-            for (found, expected) in found.into_iter().zip([entry, exit, speed_in, speed_out, contact.depth]) {
-                assert!((found - expected).abs() < 1e-11, "{model:?}: {impact:?} {contact:?}");
+            for (found, expected) in
+                found
+                    .into_iter()
+                    .zip([entry, exit, speed_in, speed_out, contact.depth])
+            {
+                assert!(
+                    (found - expected).abs() < 1e-11,
+                    "{model:?}: {impact:?} {contact:?}"
+                );
             }
         }
         for sample in 0..=240 {
@@ -241,9 +255,13 @@ fn the_special_integrator_and_that_of_any_equations_agree() {
                 panic!("{model:?} has no state at {time}");
             };
             let (special_x, special_v) = special.path.at(time).expect("a state");
-            assert!((x - special_x).abs() < 1e-11, "{model:?} at {time}: {x} {special_x}");
+            assert!(
+                (x - special_x).abs() < 1e-11,
+                "{model:?} at {time}: {x} {special_x}"
+            );
             // In contact the velocity changes by gamma d^(3/2) in a unit of time.
-            let steep = 1.0 + model.contact(model.depth(x).map_or(0.0, |(_, depth)| depth), v.abs());
+            let steep =
+                1.0 + model.contact(model.depth(x).map_or(0.0, |(_, depth)| depth), v.abs());
             assert!(
                 (v - special_v).abs() < 1e-11 * steep,
                 "{model:?} at {time}: {v} {special_v}"

@@ -10,11 +10,15 @@ use super::{REST, taylor};
 fn pendulum(amplitude: f64, t: f64) -> (f64, f64) {
     let k = (0.5 * amplitude).sin();
     let (sn, cn, dn, _) = spec_math::cephes64::ellpj(t, k * k);
-    (-2.0 * (k * cn / dn).asin(), 2.0 * k * (1.0 - k * k).sqrt() * sn / dn)
+    (
+        -2.0 * (k * cn / dn).asin(),
+        2.0 * k * (1.0 - k * k).sqrt() * sn / dn,
+    )
 }
 
-/// Time from release to touch, time in contact, and depth, of the conservative motion: elliptic F, and from the energy
-/// T = 8 sqrt(q_m) int q / sqrt(H) dw with depth = q^2, q = q_m (1 - w^2), v^2 = (q_m - q) H.
+/// Time from release to touch, time in contact, and depth, of the conservative motion: elliptic F,
+/// and from the energy T = 8 sqrt(q_m) int q / sqrt(H) dw with depth = q^2, q = q_m (1 - w^2), v^2
+/// = (q_m - q) H.
 fn exact_cycle(amplitude: f64, barrier: f64, gamma: f64) -> (f64, f64, f64) {
     let k = (0.5 * amplitude).sin();
     let approach = ellip::ellipk(k * k).expect("m < 1")
@@ -22,7 +26,8 @@ fn exact_cycle(amplitude: f64, barrier: f64, gamma: f64) -> (f64, f64, f64) {
     // 2 (cos(x_c + d) - cos A) as a product, without cancellation at grazing.
     let square = |q: f64| {
         let x = barrier + q * q;
-        4.0 * (0.5 * (amplitude + x)).sin() * (0.5 * (amplitude - x)).sin() - 0.8 * gamma * q.powi(5)
+        4.0 * (0.5 * (amplitude + x)).sin() * (0.5 * (amplitude - x)).sin()
+            - 0.8 * gamma * q.powi(5)
     };
     let deepest = find_root(square, 0.0, (amplitude - barrier).sqrt()).expect("a depth");
     let slope = |q: f64| 4.0 * q * (barrier + q * q).sin() + 4.0 * gamma * q.powi(4);
@@ -35,7 +40,11 @@ fn exact_cycle(amplitude: f64, barrier: f64, gamma: f64) -> (f64, f64, f64) {
         let q = deepest * (1.0 - w * w);
         q / quotient(q).sqrt()
     };
-    let contact = 8.0 * deepest.sqrt() * integrate_smooth(integrand, 0.0, 1.0, 1e-13).expect("smooth").0;
+    let contact = 8.0
+        * deepest.sqrt()
+        * integrate_smooth(integrand, 0.0, 1.0, 1e-13)
+            .expect("smooth")
+            .0;
     (approach, contact, deepest * deepest)
 }
 
@@ -137,7 +146,11 @@ fn grazing_contacts_are_neither_missed_nor_invented() {
         };
         let motion = taylor(&model, REST, 1e-13, 200.0);
         // Exactly at A the rounding decides, and what it makes is no impact to speak of.
-        let speed = motion.impacts.iter().map(|impact| impact.speed_in).fold(0.0, f64::max);
+        let speed = motion
+            .impacts
+            .iter()
+            .map(|impact| impact.speed_in)
+            .fold(0.0, f64::max);
         if beyond == 1.0 {
             assert!(speed < 1e-6, "{speed}");
         } else {
@@ -150,8 +163,8 @@ fn grazing_contacts_are_neither_missed_nor_invented() {
 
 #[test]
 fn a_slow_touch_bounces_as_gravity_says() {
-    // Thrown against the barrier at a speed that hardly dents it: it is back after 2 v / sin x_c and the depth is
-    // v^2 / (2 sin x_c), until the contact force counts.
+    // Thrown against the barrier at a speed that hardly dents it: it is back after 2 v / sin x_c
+    // and the depth is v^2 / (2 sin x_c), until the contact force counts.
     for speed in [1e-6, 1e-8, 1e-10] {
         let model = Model {
             gamma: 1.0,

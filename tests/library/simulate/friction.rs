@@ -42,7 +42,10 @@ fn a_driven_pendulum_sticks_and_slips_when_the_force_says_so() {
         right: Some(3.0),
         ..Model::default()
     };
-    let start = Start { x: 0.0, velocity: 0.0 };
+    let start = Start {
+        x: 0.0,
+        velocity: 0.0,
+    };
     let release = (0.3_f64 / 0.5).asin() / 0.8;
     for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
         let motion = run(&model, start, 1e-12, 60.0, integrator);

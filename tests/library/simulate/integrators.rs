@@ -1,6 +1,8 @@
 //! One integrator against the other, and against itself a hundred times tighter.
 
-use lindstedt::impact::{Friction, Integrator, Model, Settings, Start, Stop, known_until, simulate};
+use lindstedt::impact::{
+    Friction, Integrator, Model, Settings, Start, Stop, known_until, simulate,
+};
 
 use super::{REST, run, taylor};
 
@@ -17,14 +19,20 @@ fn the_judge_agrees() {
         right: Some(0.4),
         friction: Friction::Exact,
     };
-    let start = Start { x: 0.2, velocity: 1.3 };
+    let start = Start {
+        x: 0.2,
+        velocity: 1.3,
+    };
     for model in [
         damped,
         Model {
             friction: Friction::Arctangent,
             ..damped
         },
-        Model { beta: 0.0, ..damped },
+        Model {
+            beta: 0.0,
+            ..damped
+        },
         Model {
             alpha: 0.35,
             beta: 0.6,
@@ -38,11 +46,15 @@ fn the_judge_agrees() {
         assert_eq!(fast.impacts.len(), judge.impacts.len(), "{model:?}");
         for (one, other) in fast.impacts.iter().zip(&judge.impacts) {
             assert_eq!(one.side, other.side);
-            assert!((one.entry_time - other.entry_time).abs() < 1e-8, "{one:?} {other:?}");
+            assert!(
+                (one.entry_time - other.entry_time).abs() < 1e-8,
+                "{one:?} {other:?}"
+            );
         }
         for index in 0..=400 {
             let t = 0.1 * f64::from(index);
-            let ((x, v), (judge_x, judge_v)) = (fast.path.at(t).expect("t"), judge.path.at(t).expect("t"));
+            let ((x, v), (judge_x, judge_v)) =
+                (fast.path.at(t).expect("t"), judge.path.at(t).expect("t"));
             assert!(
                 (x - judge_x).abs() < 1e-7 && (v - judge_v).abs() < 1e-6,
                 "{model:?} {t}: {} {}",
@@ -88,7 +100,10 @@ fn two_barriers_are_mirror_images() {
         right: Some(0.6),
         ..model
     };
-    let start = Start { x: 0.1, velocity: 1.1 };
+    let start = Start {
+        x: 0.1,
+        velocity: 1.1,
+    };
     let image = Start {
         x: -0.1,
         velocity: -1.1,
@@ -102,7 +117,10 @@ fn two_barriers_are_mirror_images() {
             assert!((one.entry_time - other.entry_time).abs() < 1e-11);
             assert!((one.penetration - other.penetration).abs() < 1e-11);
         }
-        assert!((one.end_x + other.end_x).abs() < 1e-10 && (one.end_velocity + other.end_velocity).abs() < 1e-10);
+        assert!(
+            (one.end_x + other.end_x).abs() < 1e-10
+                && (one.end_velocity + other.end_velocity).abs() < 1e-10
+        );
     }
     // Symmetric barriers and start: every other half swing is the mirror image of the one before.
     let symmetric = Model {
@@ -110,9 +128,16 @@ fn two_barriers_are_mirror_images() {
         right: Some(0.4),
         ..Model::default()
     };
-    let start = Start { x: 0.0, velocity: 1.0 };
+    let start = Start {
+        x: 0.0,
+        velocity: 1.0,
+    };
     let motion = taylor(&symmetric, start, 1e-13, 30.0);
-    let times: Vec<f64> = motion.impacts.iter().map(|impact| impact.entry_time).collect();
+    let times: Vec<f64> = motion
+        .impacts
+        .iter()
+        .map(|impact| impact.entry_time)
+        .collect();
     assert!(times.len() > 20);
     for three in times.windows(3) {
         assert!((three[2] - 2.0 * three[1] + three[0]).abs() < 1e-10);
@@ -129,7 +154,10 @@ fn dissipative_and_forced_motions_agree_with_runs_a_hundred_times_tighter() {
     };
     for model in [
         base,
-        Model { alpha: 0.02, ..base },
+        Model {
+            alpha: 0.02,
+            ..base
+        },
         Model {
             alpha: 0.02,
             friction: Friction::Arctangent,
@@ -174,7 +202,8 @@ fn dissipative_and_forced_motions_agree_with_runs_a_hundred_times_tighter() {
     }
 }
 
-/// A contact whose damping outweighs its stiffness at the speed of the touch: both integrators follow it alike.
+/// A contact whose damping outweighs its stiffness at the speed of the touch: both integrators
+/// follow it alike.
 #[test]
 fn a_touch_faster_than_the_contact_relaxes() {
     let model = Model {
@@ -182,8 +211,8 @@ fn a_touch_faster_than_the_contact_relaxes() {
         mu: 4e4,
         ..Model::default()
     };
-    let [one, other] =
-        [Integrator::Taylor, Integrator::RungeKutta].map(|integrator| run(&model, REST, 1e-11, 12.0, integrator));
+    let [one, other] = [Integrator::Taylor, Integrator::RungeKutta]
+        .map(|integrator| run(&model, REST, 1e-11, 12.0, integrator));
     assert_eq!(one.impacts.len(), other.impacts.len());
     let first = one.impacts[0];
     assert!(first.speed_in * model.mu > 4.0 * model.gamma, "{first:?}");
@@ -197,10 +226,14 @@ fn a_touch_faster_than_the_contact_relaxes() {
     }
 }
 
-/// Where six digits are lost to a chaotic drive, there the integrators part; without chaos, or a drive, they are kept.
+/// Where six digits are lost to a chaotic drive, there the integrators part; without chaos, or a
+/// drive, they are kept.
 #[test]
 fn a_chaotic_motion_is_known_until_the_integrators_part() {
-    let still = Start { x: 0.0, velocity: 0.0 };
+    let still = Start {
+        x: 0.0,
+        velocity: 0.0,
+    };
     let driven = |beta: f64, frequency_ratio: f64, barrier: f64| Model {
         gamma: 1e4,
         mu: 500.0,
@@ -223,7 +256,8 @@ fn a_chaotic_motion_is_known_until_the_integrators_part() {
         let known = known_until(&series).expect("a chaotic motion");
         let apart = |from: f64, to: f64| {
             let times = (0..200).map(|k| from + (to - from) * f64::from(k) / 200.0);
-            let places = times.filter_map(|t| Some((series.path.at(t)?.0 - judge.path.at(t)?.0).abs()));
+            let places =
+                times.filter_map(|t| Some((series.path.at(t)?.0 - judge.path.at(t)?.0).abs()));
             places.fold(0.0, f64::max)
         };
         let places = (0..400).filter_map(|t| series.path.at(f64::from(t)));
@@ -232,14 +266,20 @@ fn a_chaotic_motion_is_known_until_the_integrators_part() {
             apart(0.0, 0.8 * known) / size,
             apart(known, (1.6 * known).min(400.0)) / size,
         );
-        assert!((20.0..350.0).contains(&known), "{beta} {frequency_ratio}: {known}");
+        assert!(
+            (20.0..350.0).contains(&known),
+            "{beta} {frequency_ratio}: {known}"
+        );
         assert!(
             before < 1e-6 && after > 1e-6,
             "{beta} {frequency_ratio}: {before:e}, {after:e} around {known}"
         );
     }
     for model in [driven(0.8, 0.6, 0.2), driven(0.0, 1.0, 0.2)] {
-        let start = Start { x: -0.5, velocity: 0.0 };
+        let start = Start {
+            x: -0.5,
+            velocity: 0.0,
+        };
         let motion = simulate(&model, start, Integrator::Taylor, &settings).expect("a motion");
         assert_eq!(known_until(&motion), None);
     }

@@ -1,5 +1,5 @@
-//! The damper against truths that it does not know: elliptic functions, quadrature, the other integrator, itself with
-//! a tighter tolerance.
+//! The damper against truths that it does not know: elliptic functions, quadrature, the other
+//! integrator, itself with a tighter tolerance.
 
 mod books;
 mod chain;
@@ -14,9 +14,18 @@ mod rest;
 
 use lindstedt::impact::{Integrator, Model, Settings, Simulation, Start, simulate};
 
-const REST: Start = Start { x: -1.5, velocity: 0.0 };
+const REST: Start = Start {
+    x: -1.5,
+    velocity: 0.0,
+};
 
-fn run(model: &Model, start: Start, tolerance: f64, duration: f64, integrator: Integrator) -> Simulation {
+fn run(
+    model: &Model,
+    start: Start,
+    tolerance: f64,
+    duration: f64,
+    integrator: Integrator,
+) -> Simulation {
     let options = Settings {
         duration,
         relative_tolerance: tolerance,
@@ -26,7 +35,8 @@ fn run(model: &Model, start: Start, tolerance: f64, duration: f64, integrator: I
     simulate(model, start, integrator, &options).expect("a motion")
 }
 
-/// As accurate as a run by the program with this `integrator_tolerance`, whose steps get a hundredth of it.
+/// As accurate as a run by the program with this `integrator_tolerance`, whose steps get a
+/// hundredth of it.
 fn taylor(model: &Model, start: Start, tolerance: f64, duration: f64) -> Simulation {
     run(
         model,

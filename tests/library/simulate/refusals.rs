@@ -13,8 +13,20 @@ fn what_is_no_motion_is_refused() {
     };
     let (model, usual) = (Model::default(), Settings::default());
     let bad = |model: Model| refuse(model, REST, usual);
-    assert!(bad(Model { zeta: -0.1, ..model }).contains("zeta must not be negative"));
-    assert!(bad(Model { gamma: 0.0, ..model }).contains("gamma must be a positive number"));
+    assert!(
+        bad(Model {
+            zeta: -0.1,
+            ..model
+        })
+        .contains("zeta must not be negative")
+    );
+    assert!(
+        bad(Model {
+            gamma: 0.0,
+            ..model
+        })
+        .contains("gamma must be a positive number")
+    );
     assert!(
         bad(Model {
             beta: f64::NAN,
@@ -61,7 +73,8 @@ fn a_motion_below_all_numbers_is_refused() {
         },
     ] {
         for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
-            let refused = simulate(&Model::default(), start, integrator, &Settings::default()).unwrap_err();
+            let refused =
+                simulate(&Model::default(), start, integrator, &Settings::default()).unwrap_err();
             assert!(refused.to_string().contains("scale it up"), "{refused}");
         }
     }
@@ -73,7 +86,8 @@ fn a_run_that_breaks_off_keeps_what_it_has() {
         maximum_steps: 40,
         ..Settings::default()
     };
-    let motion = simulate(&Model::default(), REST, Integrator::Taylor, &options).expect("it begins");
+    let motion =
+        simulate(&Model::default(), REST, Integrator::Taylor, &options).expect("it begins");
     let Stop::Steps { t } = motion.stop else {
         panic!("{}", motion.stop)
     };

@@ -20,7 +20,10 @@ fn rest_times_of_the_plain_pendulum() {
             ..Model::default()
         };
         let rest = taylor(&model, REST, 1e-10, 300.0).rest();
-        assert!((rest.time.expect("it rests") - envelope).abs() < 0.06, "{rest:?}");
+        assert!(
+            (rest.time.expect("it rests") - envelope).abs() < 0.06,
+            "{rest:?}"
+        );
         assert!(
             (rest.last_crossing.expect("it crosses") - last).abs() < 0.06,
             "{rest:?}"
@@ -28,7 +31,8 @@ fn rest_times_of_the_plain_pendulum() {
     }
 }
 
-/// Held by friction soon after a crest above the level: when it came to rest does not change with how long the run goes on.
+/// Held by friction soon after a crest above the level: when it came to rest does not change with
+/// how long the run goes on.
 #[test]
 fn how_long_a_run_is_does_not_change_when_its_motion_rests() {
     let model = Model {
@@ -36,25 +40,38 @@ fn how_long_a_run_is_does_not_change_when_its_motion_rests() {
         ..Model::default()
     };
     for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
-        let [short, long] = [10.0, 200.0].map(|duration| run(&model, REST, 1e-12, duration, integrator).rest());
+        let [short, long] =
+            [10.0, 200.0].map(|duration| run(&model, REST, 1e-12, duration, integrator).rest());
         let time = short.time.expect("it rests");
-        assert!((long.time.expect("it rests") - time).abs() < 1e-9, "{short:?} {long:?}");
+        assert!(
+            (long.time.expect("it rests") - time).abs() < 1e-9,
+            "{short:?} {long:?}"
+        );
         // Between the last crest beyond the level and the place where it is held.
         assert!((5.0..7.5).contains(&time), "{time}");
     }
 }
 
-/// The rest time by its definition, from nothing but samples of the Runge-Kutta motion: crests on the left, each by a
-/// parabola through three samples, and the straight line of log|x| between the two around the level, x counted from the place of rest.
+/// The rest time by its definition, from nothing but samples of the Runge-Kutta motion: crests on
+/// the left, each by a parabola through three samples, and the straight line of log|x| between the
+/// two around the level, x counted from the place of rest.
 fn rest_by_samples(model: &Model, place: f64, level: f64, duration: f64) -> f64 {
     const STEP: f64 = 1e-3;
     let motion = run(model, REST, 1e-11, duration, Integrator::RungeKutta);
-    let at = |k: usize| motion.path.at(STEP * k as f64).map_or(0.0, |(x, _)| x - place);
+    let at = |k: usize| {
+        motion
+            .path
+            .at(STEP * k as f64)
+            .map_or(0.0, |(x, _)| x - place)
+    };
     let crests = (1..(duration / STEP) as usize - 1).filter_map(|k| {
         let [before, here, after] = [at(k - 1), at(k), at(k + 1)];
         (here < before && here <= after).then(|| {
             let (slope, bend) = (0.5 * (after - before), before - 2.0 * here + after);
-            (STEP * (k as f64 - slope / bend), here - 0.5 * slope * slope / bend)
+            (
+                STEP * (k as f64 - slope / bend),
+                here - 0.5 * slope * slope / bend,
+            )
         })
     });
     let mut before = (0.0, REST.x - place);
@@ -78,7 +95,12 @@ fn a_barrier_near_plumb_does_not_invent_rest() {
         };
         for duration in [98.5, 100.0, 101.3] {
             let rest = taylor(&model, REST, 1e-10, duration).rest();
-            assert_eq!(rest.time, Err(NoRest::StaysAbove), "{:?} {duration}", model.right);
+            assert_eq!(
+                rest.time,
+                Err(NoRest::StaysAbove),
+                "{:?} {duration}",
+                model.right
+            );
         }
     }
     for (right, mu) in [(0.1, 1e4), (0.02, 1e4), (0.146, 1e5)] {
@@ -89,8 +111,14 @@ fn a_barrier_near_plumb_does_not_invent_rest() {
             zeta: 0.01,
             ..Model::default()
         };
-        assert_eq!(taylor(&model, REST, 1e-10, 100.0).rest().time, Err(NoRest::StaysAbove));
-        let found = taylor(&model, REST, 1e-10, 260.0).rest().time.expect("it rests");
+        assert_eq!(
+            taylor(&model, REST, 1e-10, 100.0).rest().time,
+            Err(NoRest::StaysAbove)
+        );
+        let found = taylor(&model, REST, 1e-10, 260.0)
+            .rest()
+            .time
+            .expect("it rests");
         let sampled = rest_by_samples(&model, 0.0, 0.15, 260.0);
         assert!((found - sampled).abs() < 1e-3, "{right}: {found} {sampled}");
     }
@@ -106,9 +134,14 @@ fn the_rest_time_is_continuous_in_the_place_of_the_barrier() {
             zeta: 0.01,
             ..Model::default()
         };
-        taylor(&model, REST, 1e-10, 200.0).rest().time.expect("it rests")
+        taylor(&model, REST, 1e-10, 200.0)
+            .rest()
+            .time
+            .expect("it rests")
     };
-    let times: Vec<f64> = (0..=40).map(|k| rest(0.14 + 2.5e-4 * f64::from(k))).collect();
+    let times: Vec<f64> = (0..=40)
+        .map(|k| rest(0.14 + 2.5e-4 * f64::from(k)))
+        .collect();
     // It rises by a twentieth from one to the next, and so does the rise, smoothly.
     let bends = times
         .windows(3)
@@ -129,7 +162,10 @@ fn the_rest_time_does_not_depend_on_where_in_the_first_swing_the_motion_is_taken
     for t in [0.5, 1.3, 1.8] {
         let (x, velocity) = whole.path.at(t).expect("on the way");
         let later = taylor(&model, Start { x, velocity }, 1e-11, 900.0).rest();
-        assert!((later.amplitude - rest.amplitude).abs() < 1e-10, "{later:?}");
+        assert!(
+            (later.amplitude - rest.amplitude).abs() < 1e-10,
+            "{later:?}"
+        );
         let (later, whole) = (later.time.expect("it rests"), rest.time.expect("it rests"));
         assert!((later + t - whole).abs() < 1e-5, "{t}: {later} {whole}");
     }
@@ -137,7 +173,8 @@ fn the_rest_time_does_not_depend_on_where_in_the_first_swing_the_motion_is_taken
 
 #[test]
 fn a_motion_that_creeps_is_its_own_envelope_and_one_that_swings_must_be_seen_to_turn() {
-    // x'' + 4 x' + x = 0 for small x: slopes s = -2 +- sqrt 3, x = (s1 e^(s2 t) - s2 e^(s1 t))/(s1 - s2) of the start.
+    // x'' + 4 x' + x = 0 for small x: slopes s = -2 +- sqrt 3, x = (s1 e^(s2 t) - s2 e^(s1
+    // t))/(s1 - s2) of the start.
     let model = Model {
         zeta: 2.0,
         right: Some(1.0),
@@ -151,7 +188,10 @@ fn a_motion_that_creeps_is_its_own_envelope_and_one_that_swings_must_be_seen_to_
     let left = |t: f64| (slow * (fast * t).exp() - fast * (slow * t).exp()) / (slow - fast);
     let exact = find_root(|t| left(t) - 0.1, 1.0, 20.0).expect("it falls");
     let rest = taylor(&model, start, 1e-10, 60.0).rest();
-    assert!((rest.time.expect("it rests") - exact).abs() < 1e-6, "{rest:?} {exact}");
+    assert!(
+        (rest.time.expect("it rests") - exact).abs() < 1e-6,
+        "{rest:?} {exact}"
+    );
 
     let swinging = Model { zeta: 0.5, ..model };
     let soon = taylor(&swinging, REST, 1e-10, 6.0).rest();
@@ -159,7 +199,8 @@ fn a_motion_that_creeps_is_its_own_envelope_and_one_that_swings_must_be_seen_to_
     assert!(taylor(&swinging, REST, 1e-10, 60.0).rest().time.is_ok());
 }
 
-/// Over the top there is no swing: the amplitude is half a turn, wherever the count of turns begins.
+/// Over the top there is no swing: the amplitude is half a turn, wherever the count of turns
+/// begins.
 #[test]
 fn the_amplitude_of_a_motion_that_turns_over() {
     let model = Model {
@@ -176,7 +217,8 @@ fn the_amplitude_of_a_motion_that_turns_over() {
     }
 }
 
-/// Where a rest energy is given the run ends as it is reached, with what a longer run had until then.
+/// Where a rest energy is given the run ends as it is reached, with what a longer run had until
+/// then.
 #[test]
 fn a_run_ends_where_its_energy_has_died_away() {
     let plain = Model {
@@ -212,10 +254,14 @@ fn a_run_ends_where_its_energy_has_died_away() {
             );
             last = motion.end_time;
             let before = full.turns.iter().filter(|turn| turn.t <= motion.end_time);
-            assert_eq!(motion.turns.iter().collect::<Vec<_>>(), before.collect::<Vec<_>>());
+            assert_eq!(
+                motion.turns.iter().collect::<Vec<_>>(),
+                before.collect::<Vec<_>>()
+            );
             if model.right.is_none() {
                 assert!((energy / calm - 1.0).abs() < 1e-9, "{energy} {calm}");
-                let judge = simulate(&model, REST, Integrator::RungeKutta, &options).expect("a motion");
+                let judge =
+                    simulate(&model, REST, Integrator::RungeKutta, &options).expect("a motion");
                 assert_eq!(judge.stop, Stop::RestEnergy);
                 assert!((judge.end_time - motion.end_time).abs() < 1e-5);
             }
@@ -223,8 +269,9 @@ fn a_run_ends_where_its_energy_has_died_away() {
     }
 }
 
-/// The same swing without a barrier and with a lossless one: the action of a lightly damped motion falls as exp(-2 zeta t), so the
-/// rest times differ by the logarithm of the ratio of the actions at the start, less that at the end.
+/// The same swing without a barrier and with a lossless one: the action of a lightly damped motion
+/// falls as exp(-2 zeta t), so the rest times differ by the logarithm of the ratio of the actions
+/// at the start, less that at the end.
 #[test]
 fn the_baseline_is_that_of_the_actions() {
     let settings = Settings {
@@ -241,7 +288,8 @@ fn the_baseline_is_that_of_the_actions() {
         .unwrap()
         .expect("it hits and is damped");
     let (none, lossless) = (found.no_barrier.unwrap(), found.lossless_barrier.unwrap());
-    // The area from the far turning point to x, 2 int sqrt(2 (cos x - cos A)) dx, by the midpoint rule in the angle.
+    // The area from the far turning point to x, 2 int sqrt(2 (cos x - cos A)) dx, by the midpoint
+    // rule in the angle.
     let area = |amplitude: f64, barrier: f64| {
         let speed = |x: f64| (2.0 * (x.cos() - amplitude.cos())).max(0.0).sqrt();
         let (parts, to) = (20_000, (barrier / amplitude).clamp(-1.0, 1.0).asin());
@@ -254,12 +302,19 @@ fn the_baseline_is_that_of_the_actions() {
     };
     let whole = area(1.5, 1.5);
     let decay = |from: f64| (from / area(0.15, 0.15)).ln() / (2.0 * model.zeta);
-    assert!((none / decay(whole) - 1.0).abs() < 0.01, "{none} and {}", decay(whole));
+    assert!(
+        (none / decay(whole) - 1.0).abs() < 0.01,
+        "{none} and {}",
+        decay(whole)
+    );
     // Cut at the barrier until its amplitude is that of the barrier, whole from there on.
     let barrier = model.right.unwrap();
     let cut = (area(1.5, barrier) / area(barrier, barrier)).ln() / (2.0 * model.zeta);
     let rest = cut + decay(area(barrier, barrier));
-    assert!((lossless / rest - 1.0).abs() < 0.01, "{lossless} and {rest}");
+    assert!(
+        (lossless / rest - 1.0).abs() < 0.01,
+        "{lossless} and {rest}"
+    );
     assert!(motion.rest().time.unwrap() < lossless && lossless < none);
     // Nothing to compare where nothing damps the swing, or nothing is hit.
     for model in [
@@ -274,8 +329,8 @@ fn the_baseline_is_that_of_the_actions() {
     }
 }
 
-/// Critical and stronger damping: the only fall there is, x/x_0 = (1 + t) e^-t of the linear swing, and with two rates. With and
-/// without the path.
+/// Critical and stronger damping: the only fall there is, x/x_0 = (1 + t) e^-t of the linear swing,
+/// and with two rates. With and without the path.
 #[test]
 fn motions_that_creep_rest_where_they_have_fallen_to_a_tenth() {
     let small = Start {
@@ -306,13 +361,16 @@ fn motions_that_creep_rest_where_they_have_fallen_to_a_tenth() {
                 .expect("a motion")
                 .rest();
             let time = rest.time.expect("it rests");
-            assert!((time / truth - 1.0).abs() < 1e-8, "zeta = {zeta}: {time} and {truth}");
+            assert!(
+                (time / truth - 1.0).abs() < 1e-8,
+                "zeta = {zeta}: {time} and {truth}"
+            );
         }
     }
 }
 
-/// Just below critical damping the next turning point is a millionth of the first: no tenth of it is reached before the motion falls to it,
-/// and nothing jumps where the damping becomes critical.
+/// Just below critical damping the next turning point is a millionth of the first: no tenth of it
+/// is reached before the motion falls to it, and nothing jumps where the damping becomes critical.
 #[test]
 fn no_motion_rests_before_it_has_fallen_to_a_tenth() {
     let times: Vec<f64> = [0.75, 0.8, 0.9, 0.99, 0.9999, 1.0, 1.0001]
@@ -327,7 +385,8 @@ fn no_motion_rests_before_it_has_fallen_to_a_tenth() {
                 ..Settings::default()
             };
             let [told, untold] = [&Settings::default(), &settings].map(|settings| {
-                let motion = simulate(&model, REST, Integrator::Taylor, settings).expect("a motion");
+                let motion =
+                    simulate(&model, REST, Integrator::Taylor, settings).expect("a motion");
                 motion.rest()
             });
             let time = told.time.expect("it rests");
@@ -335,7 +394,9 @@ fn no_motion_rests_before_it_has_fallen_to_a_tenth() {
                 time >= told.last_crossing.expect("it falls") - 1e-9,
                 "zeta = {zeta}: {told:?}"
             );
-            let same = untold.time.is_ok_and(|untold| (untold / time - 1.0).abs() < 1e-8);
+            let same = untold
+                .time
+                .is_ok_and(|untold| (untold / time - 1.0).abs() < 1e-8);
             assert!(same, "zeta = {zeta}: {told:?} {untold:?}");
             time
         })
@@ -344,8 +405,9 @@ fn no_motion_rests_before_it_has_fallen_to_a_tenth() {
     assert!((times[4] / times[6] - 1.0).abs() < 1e-3, "{times:?}");
 }
 
-/// Where the last turning point beyond the level comes and goes the rest time as a function of the friction is steep, and has no jump:
-/// wherever it changes most, it changes less the closer one looks.
+/// Where the last turning point beyond the level comes and goes the rest time as a function of the
+/// friction is steep, and has no jump: wherever it changes most, it changes less the closer one
+/// looks.
 #[test]
 fn the_rest_time_does_not_jump_where_the_last_turning_point_does() {
     for (amplitude, right, integrator) in [
@@ -376,7 +438,9 @@ fn the_rest_time_does_not_jump_where_the_last_turning_point_does() {
         let (from, to) = (0.0985 * amplitude, 0.1015 * amplitude);
         let (mut from, mut to) = (from, to);
         for _ in 0..6 {
-            let alphas: Vec<f64> = (0..=24).map(|k| from + (to - from) * f64::from(k) / 24.0).collect();
+            let alphas: Vec<f64> = (0..=24)
+                .map(|k| from + (to - from) * f64::from(k) / 24.0)
+                .collect();
             let times: Vec<f64> = alphas.iter().map(|alpha| rest(*alpha)).collect();
             let rise = |k: &usize| (times[k + 1] - times[*k]).abs();
             let most = (0..24)
@@ -385,7 +449,10 @@ fn the_rest_time_does_not_jump_where_the_last_turning_point_does() {
             (from, to) = (alphas[most], alphas[most + 1]);
         }
         let jump = (rest(to) - rest(from)).abs();
-        assert!(jump < 1e-3, "{amplitude} {right:?} {integrator:?}: {jump} at {from}");
+        assert!(
+            jump < 1e-3,
+            "{amplitude} {right:?} {integrator:?}: {jump} at {from}"
+        );
     }
 }
 
@@ -401,7 +468,10 @@ fn a_rest_time_does_not_depend_on_whether_the_path_is_kept() {
                 right: Some(1.0),
                 ..Model::default()
             };
-            let start = Start { x: -0.4, velocity: 0.0 };
+            let start = Start {
+                x: -0.4,
+                velocity: 0.0,
+            };
             let [kept, not] = [true, false].map(|keep_path| {
                 let settings = Settings {
                     duration: 100.0,
@@ -420,7 +490,8 @@ fn a_rest_time_does_not_depend_on_whether_the_path_is_kept() {
     }
 }
 
-/// A turn more or less is the same motion: one that begins at -4 settles at -2 pi as one that begins at 2 pi - 4 does at 0.
+/// A turn more or less is the same motion: one that begins at -4 settles at -2 pi as one that
+/// begins at 2 pi - 4 does at 0.
 #[test]
 fn a_motion_that_goes_over_the_top_rests_where_it_settles() {
     let model = Model {
@@ -435,8 +506,14 @@ fn a_motion_that_goes_over_the_top_rests_where_it_settles() {
             run(&model, start, 1e-12, 200.0, integrator).rest()
         });
         assert_eq!((beyond.place, plain.place), (-turn, 0.0));
-        assert!((beyond.amplitude - (turn - 4.0)).abs() < 1e-12, "{beyond:?}");
-        let (one, other) = (beyond.time.expect("it rests"), plain.time.expect("it rests"));
+        assert!(
+            (beyond.amplitude - (turn - 4.0)).abs() < 1e-12,
+            "{beyond:?}"
+        );
+        let (one, other) = (
+            beyond.time.expect("it rests"),
+            plain.time.expect("it rests"),
+        );
         assert!((one - other).abs() < 1e-6, "{one} {other}");
         let (one, other) = (
             beyond.last_crossing.expect("falls"),
@@ -446,8 +523,9 @@ fn a_motion_that_goes_over_the_top_rests_where_it_settles() {
     }
 }
 
-/// Held by a barrier before the bottom the pendulum rests there, pressed in by its weight, and that is where amplitudes are counted from:
-/// the crests against samples of the other integrator, with the run stopped as soon as the rest is known and not.
+/// Held by a barrier before the bottom the pendulum rests there, pressed in by its weight, and that
+/// is where amplitudes are counted from: the crests against samples of the other integrator, with
+/// the run stopped as soon as the rest is known and not.
 #[test]
 fn a_pendulum_held_by_its_barrier_rests_there() {
     let model = Model {

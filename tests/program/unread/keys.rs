@@ -8,7 +8,8 @@ const FORMULA: &str = "equation = \"x'' + x + eps*x^3 + eps*x^5 = 0\"\n";
 
 const HILL: &str = "equation = \"x'' + (delta + eps*cos(t))*x = 0\"\n";
 
-const MECHANISM: &str = "[lagrangian]\ncoordinates = [\"x\"]\nkinetic = \"x'^2/2\"\npotential = \"x^2/2 + x^4/4\"\n";
+const MECHANISM: &str =
+    "[lagrangian]\ncoordinates = [\"x\"]\nkinetic = \"x'^2/2\"\npotential = \"x^2/2 + x^4/4\"\n";
 
 const MAIN_MASS: &str = "[pendulum]\nstart = 0.25\n[primary]\nmass = 0.5\nstiffness = 50\n";
 
@@ -21,7 +22,11 @@ const LINES: [(&str, &str, &str); 95] = [
     ("periods", "periods = 2", FORMULA),
     ("small", "small = \"A\"", FORMULA),
     ("amplitude", "amplitude = \"first-harmonic\"", FORMULA),
-    ("about", "about = \"x = 1\"", "equation = \"x'' - x + x^3 = 0\"\n"),
+    (
+        "about",
+        "about = \"x = 1\"",
+        "equation = \"x'' - x + x^3 = 0\"\n",
+    ),
     ("[values]", "[values]\nA = 0.25\neps = 0.5", FORMULA),
     (
         "[lagrangian] coordinates",
@@ -38,11 +43,23 @@ const LINES: [(&str, &str, &str); 95] = [
         "potential = \"x^2/2 + x^4/4\"",
         "[lagrangian]\ncoordinates = [\"x\"]\nkinetic = \"x'^2/3\"\n",
     ),
-    ("[lagrangian] dissipation", "dissipation = \"x'^2/4\"", MECHANISM),
-    ("[lagrangian] forces", "forces = { x = \"-x^3\" }", MECHANISM),
+    (
+        "[lagrangian] dissipation",
+        "dissipation = \"x'^2/4\"",
+        MECHANISM,
+    ),
+    (
+        "[lagrangian] forces",
+        "forces = { x = \"-x^3\" }",
+        MECHANISM,
+    ),
     ("[units]", "[units]\nx = \"m\"", MECHANISM),
     ("[primary] mass", "[primary]\nmass = 1", ""),
-    ("[primary] stiffness", "stiffness = 50", "[primary]\nmass = 1\n"),
+    (
+        "[primary] stiffness",
+        "stiffness = 50",
+        "[primary]\nmass = 1\n",
+    ),
     ("[primary] damping", "damping = 0.25", MAIN_MASS),
     ("[primary] displacement", "displacement = 0.25", MAIN_MASS),
     ("[primary] speed", "speed = 0.25", MAIN_MASS),
@@ -59,7 +76,11 @@ const LINES: [(&str, &str, &str); 95] = [
     ("[contact] gamma", "[contact]\ngamma = 1e5", ""),
     ("[contact] force", "[contact]\nforce = \"1e6*d^2\"", ""),
     ("[contact] mu", "[contact]\nmu = 1e5", ""),
-    ("[contact] mu_over_gamma", "[contact]\nmu_over_gamma = 0.25", ""),
+    (
+        "[contact] mu_over_gamma",
+        "[contact]\nmu_over_gamma = 0.25",
+        "",
+    ),
     ("[contact] lambda", "[contact]\nlambda = 0.25", ""),
     ("[contact] restitution", "[contact]\nrestitution = 0.75", ""),
     (
@@ -110,9 +131,17 @@ const LINES: [(&str, &str, &str); 95] = [
     ("[barrier] poisson", "[barrier]\npoisson = 0.3", ""),
     ("[barrier] yield", "[barrier]\nyield = 1e7", ""),
     ("[run] duration", "[run]\nduration = 25", ""),
-    ("[run] integrator_tolerance", "[run]\nintegrator_tolerance = 1e-6", ""),
+    (
+        "[run] integrator_tolerance",
+        "[run]\nintegrator_tolerance = 1e-6",
+        "",
+    ),
     ("[run] step_limit", "[run]\nstep_limit = 3", ""),
-    ("[[material]]", "[[material]]\nname = \"Cork\"\nmodulus = 2e7", ""),
+    (
+        "[[material]]",
+        "[[material]]\nname = \"Cork\"\nmodulus = 2e7",
+        "",
+    ),
     ("[limits] mass", "[limits]\nmass = [0.02, 0.05]", ""),
     ("[limits] radius", "[limits]\nradius = [0.002, 0.01]", ""),
     ("[limits] length", "[limits]\nlength = [0.05, 0.2]", ""),
@@ -129,8 +158,16 @@ const LINES: [(&str, &str, &str); 95] = [
         "[limits]\nmax_dimensionless_rest_time = 95",
         "",
     ),
-    ("[limits] max_peak_force", "[limits]\nmax_peak_force = 200", ""),
-    ("[limits] max_peak_pressure", "[limits]\nmax_peak_pressure = 1e9", ""),
+    (
+        "[limits] max_peak_force",
+        "[limits]\nmax_peak_force = 200",
+        "",
+    ),
+    (
+        "[limits] max_peak_pressure",
+        "[limits]\nmax_peak_pressure = 1e9",
+        "",
+    ),
     ("[limits] max_impacts", "[limits]\nmax_impacts = 12", ""),
     (
         "[limits] max_primary_rest_time",
@@ -146,16 +183,32 @@ const LINES: [(&str, &str, &str); 95] = [
         "[genetic]\ncrossover_fraction = 0.5",
         "",
     ),
-    ("[genetic] crossover", "[genetic]\ncrossover = \"scattered\"", ""),
-    ("[genetic] crossover_ratio", "[genetic]\ncrossover_ratio = 1.5", ""),
-    ("[genetic] mutation", "[genetic]\nmutation = \"bit-flip\"", ""),
+    (
+        "[genetic] crossover",
+        "[genetic]\ncrossover = \"scattered\"",
+        "",
+    ),
+    (
+        "[genetic] crossover_ratio",
+        "[genetic]\ncrossover_ratio = 1.5",
+        "",
+    ),
+    (
+        "[genetic] mutation",
+        "[genetic]\nmutation = \"bit-flip\"",
+        "",
+    ),
     (
         "[genetic] mutation_rate",
         "mutation_rate = 0.1",
         "[genetic]\ncoding = \"bits\"\n",
     ),
     ("[genetic] coding", "[genetic]\ncoding = \"bits\"", ""),
-    ("[genetic] bits", "bits = 8", "[genetic]\ncoding = \"bits\"\n"),
+    (
+        "[genetic] bits",
+        "bits = 8",
+        "[genetic]\ncoding = \"bits\"\n",
+    ),
     (
         "[genetic] penalty",
         "[genetic]\npenalty = \"death\"",
@@ -176,9 +229,21 @@ const LINES: [(&str, &str, &str); 95] = [
         "[genetic]\nconstraint_tolerance = 0.5",
         "[limits]\ndensity = 7850\n",
     ),
-    ("[genetic] stall_generations", "[genetic]\nstall_generations = 1", ""),
-    ("[genetic] function_tolerance", "[genetic]\nfunction_tolerance = 1", ""),
-    ("[genetic] stall_test", "[genetic]\nstall_test = \"weighted\"", ""),
+    (
+        "[genetic] stall_generations",
+        "[genetic]\nstall_generations = 1",
+        "",
+    ),
+    (
+        "[genetic] function_tolerance",
+        "[genetic]\nfunction_tolerance = 1",
+        "",
+    ),
+    (
+        "[genetic] stall_test",
+        "[genetic]\nstall_test = \"weighted\"",
+        "",
+    ),
     (
         "[genetic] runs",
         "runs = 2",
@@ -212,10 +277,13 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
             };
             // An impact, a study of materials and a search take nothing of [excitation].
             let (with, without) = match (reader, key) {
-                (Reader::Impact, "[excitation] beta") => ("[excitation]\nbeta = 0.25\n".to_owned(), String::new()),
-                (Reader::Materials | Reader::Optimize, "[excitation] frequency_ratio") => {
-                    ("[excitation]\nfrequency_ratio = 0.75\n".to_owned(), String::new())
+                (Reader::Impact, "[excitation] beta") => {
+                    ("[excitation]\nbeta = 0.25\n".to_owned(), String::new())
                 }
+                (Reader::Materials | Reader::Optimize, "[excitation] frequency_ratio") => (
+                    "[excitation]\nfrequency_ratio = 0.75\n".to_owned(),
+                    String::new(),
+                ),
                 _ => (with, without),
             };
             let foreign = matches!(
@@ -236,8 +304,7 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
             };
             // A search reads a main mass where its rest counts.
             let of_main_mass = reader == Reader::Optimize && key.starts_with("[primary]");
-            let wish =
-                "[genetic]\nobjective = \"primary_rest_time\"\npopulation = 4\ngenerations = 1\nruns = 1\nelite = 1\n";
+            let wish = "[genetic]\nobjective = \"primary_rest_time\"\npopulation = 4\ngenerations = 1\nruns = 1\nelite = 1\n";
             let (with, without) = match of_main_mass {
                 true => (
                     format!(
@@ -249,10 +316,15 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
                 false => (with, without),
             };
             // A mechanism needs the rest of its impact, and one that is derived a mechanism.
-            let foreign = reader == Reader::Lagrange && !key.starts_with("[lagrangian]") && beside != MECHANISM;
+            let foreign = reader == Reader::Lagrange
+                && !key.starts_with("[lagrangian]")
+                && beside != MECHANISM;
             let named_otherwise = foreign && beside.starts_with('[');
             let (with, without) = match foreign {
-                true => (format!("{with}{MECHANISM}"), format!("{without}{MECHANISM}")),
+                true => (
+                    format!("{with}{MECHANISM}"),
+                    format!("{without}{MECHANISM}"),
+                ),
                 false => (with, without),
             };
             // Periodic coefficients make another equation.
@@ -292,7 +364,10 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
                 continue;
             }
             let base = of_file("base", &without, &arguments);
-            assert!(answer != base, "`{key}` changes nothing for {command}: {answer:?}");
+            assert!(
+                answer != base,
+                "`{key}` changes nothing for {command}: {answer:?}"
+            );
         }
     }
 }
@@ -303,25 +378,50 @@ fn every_key_of_a_response_changes_it_or_is_refused_by_name() {
     let equation = "equation = \"x'' + x'/2 + x + eps*x^3 - F*cos(t) = 0\"\n";
     let vary = "vary = \"F=0.5:0.6\"\n";
     let values = "[values]\neps = 0.5\n";
-    let base = of_file("response-base", &format!("{equation}{vary}{values}"), &["response"]);
+    let base = of_file(
+        "response-base",
+        &format!("{equation}{vary}{values}"),
+        &["response"],
+    );
     assert_eq!(base.0, Some(0), "{base:?}");
     for (key, file) in [
         (
             "equation",
             format!("{}{vary}{values}", equation.replace("x'/2", "x'/3")),
         ),
-        ("vary", format!("{equation}{}{values}", vary.replace("0.6", "0.7"))),
-        ("FROM:TO", format!("{equation}{}{values}", vary.replace(":0.6", ""))),
-        ("[values]", format!("{equation}{vary}{}", values.replace("0.5", "0.6"))),
+        (
+            "vary",
+            format!("{equation}{}{values}", vary.replace("0.6", "0.7")),
+        ),
+        (
+            "FROM:TO",
+            format!("{equation}{}{values}", vary.replace(":0.6", "")),
+        ),
+        (
+            "[values]",
+            format!("{equation}{vary}{}", values.replace("0.5", "0.6")),
+        ),
         ("order", format!("{equation}{vary}order = 1\n{values}")),
         ("periods", format!("{equation}{vary}periods = 2\n{values}")),
-        ("method", format!("{equation}{vary}method = \"pade\"\n{values}")),
-        ("small", format!("{equation}{vary}small = \"eps\"\n{values}")),
-        ("run", format!("{equation}{vary}{values}[run]\nduration = 5\n")),
+        (
+            "method",
+            format!("{equation}{vary}method = \"pade\"\n{values}"),
+        ),
+        (
+            "small",
+            format!("{equation}{vary}small = \"eps\"\n{values}"),
+        ),
+        (
+            "run",
+            format!("{equation}{vary}{values}[run]\nduration = 5\n"),
+        ),
     ] {
         let answer = of_file("response-key", &file, &["response"]);
         assert!(answer != base, "{key}: {answer:?}");
-        assert!(answer.0 == Some(0) || answer.2.contains(key), "{key}: {answer:?}");
+        assert!(
+            answer.0 == Some(0) || answer.2.contains(key),
+            "{key}: {answer:?}"
+        );
     }
 }
 
@@ -333,14 +433,19 @@ fn every_key_of_a_motion_of_ones_own_changes_it_or_is_refused_by_name() {
         let of_mechanism = key.starts_with("[lagrangian]") || key == "[units]";
         let (with, without) = match of_mechanism {
             true => (format!("{beside}{line}\n"), beside.to_owned()),
-            false if key == "equation" => (format!("{line}\n"), "equation = \"x'' + x = 0\"".to_owned()),
+            false if key == "equation" => {
+                (format!("{line}\n"), "equation = \"x'' + x = 0\"".to_owned())
+            }
             false => {
                 let equation = "equation = \"x'' + eps*x^3 + A = 0\"\n";
                 let line = line.replace("A = 0.25\neps = 0.5", "A = 0.25");
                 let line = line.replace("A = 0.25", "eps = 0.25");
                 let equation = equation.replace(" + A", "");
                 let sections = if beside.starts_with('[') { beside } else { "" };
-                (format!("{equation}{sections}{line}\n"), format!("{equation}{sections}"))
+                (
+                    format!("{equation}{sections}{line}\n"),
+                    format!("{equation}{sections}"),
+                )
             }
         };
         let coordinate = if key == "[lagrangian] coordinates" {
@@ -357,7 +462,8 @@ fn every_key_of_a_motion_of_ones_own_changes_it_or_is_refused_by_name() {
         match readers.contains(&Reader::Trajectory) {
             false => assert!(
                 matches!(answer.0, Some(1 | 2))
-                    && (answer.2.contains(word.trim_matches(['[', ']'])) || answer.2.contains("[primary]"))
+                    && (answer.2.contains(word.trim_matches(['[', ']']))
+                        || answer.2.contains("[primary]"))
                     || !beside.is_empty(),
                 "`{key}`: {answer:?}"
             ),
@@ -372,13 +478,21 @@ fn every_key_of_a_motion_of_ones_own_changes_it_or_is_refused_by_name() {
 #[test]
 fn keys_that_others_leave_nothing_to_say_are_refused_with_both_names() {
     for (text, arguments, words) in [
-        ("[pendulum]\namplitude = 1\nstart = 0.1", vec![], ["amplitude", "start"]),
+        (
+            "[pendulum]\namplitude = 1\nstart = 0.1",
+            vec![],
+            ["amplitude", "start"],
+        ),
         (
             "[excitation]\nfrequency_ratio = 0.5",
             vec![],
             ["frequency_ratio", "beta"],
         ),
-        ("[damping]\nfriction = \"exact\"", vec![], ["friction", "alpha"]),
+        (
+            "[damping]\nfriction = \"exact\"",
+            vec![],
+            ["friction", "alpha"],
+        ),
         ("[contact]\nmu = 1\nlambda = 1", vec![], ["mu", "lambda"]),
         (
             "[contact]\nrestitution = 0.8\ndamping = 1",
@@ -390,8 +504,16 @@ fn keys_that_others_leave_nothing_to_say_are_refused_with_both_names() {
             vec![],
             ["lambda", "mu_over_gamma"],
         ),
-        ("[contact]\nat_speed = 1", vec![], ["at_speed", "restitution"]),
-        ("[damping]\nzeta = 0.1\nviscous = 1", vec![], ["zeta", "viscous"]),
+        (
+            "[contact]\nat_speed = 1",
+            vec![],
+            ["at_speed", "restitution"],
+        ),
+        (
+            "[damping]\nzeta = 0.1\nviscous = 1",
+            vec![],
+            ["zeta", "viscous"],
+        ),
         (
             "[damping]\nalpha = 0.1",
             vec!["--sweep", "torque=0:1e-4:3"],
@@ -432,13 +554,21 @@ fn keys_that_others_leave_nothing_to_say_are_refused_with_both_names() {
             vec!["--sweep", "frequency_ratio=0.5:1:3"],
             ["frequency_ratio", "beta"],
         ),
-        ("[contact]\nmu = 1", vec!["--sweep", "lambda=0:1:3"], ["mu", "lambda"]),
+        (
+            "[contact]\nmu = 1",
+            vec!["--sweep", "lambda=0:1:3"],
+            ["mu", "lambda"],
+        ),
         (
             "[excitation]\nbeta = 0",
             vec!["--sweep", "frequency_ratio=0.5:1:3"],
             ["frequency_ratio", "beta"],
         ),
-        ("", vec!["--sweep", "beta=0.1:1:3"], ["beta", "frequency_ratio"]),
+        (
+            "",
+            vec!["--sweep", "beta=0.1:1:3"],
+            ["beta", "frequency_ratio"],
+        ),
         (
             "[pendulum]\nbarrier = false",
             vec!["--sweep", "gamma=1e4:1e5:3:log"],
@@ -450,7 +580,11 @@ fn keys_that_others_leave_nothing_to_say_are_refused_with_both_names() {
             ["length", "gamma"],
         ),
     ] {
-        let answer = of_file("both", text, &[&["simulate"], arguments.as_slice()].concat());
+        let answer = of_file(
+            "both",
+            text,
+            &[&["simulate"], arguments.as_slice()].concat(),
+        );
         assert!(
             words.iter().all(|word| is_refused(&answer, word)),
             "{text}, {arguments:?}: {answer:?}"
@@ -473,22 +607,53 @@ fn keys_that_others_leave_nothing_to_say_are_refused_with_both_names() {
     assert_ne!(rows[0], rows[1]);
     // A gamma that is given wins over the design, and says so.
     for command in ["impact", "simulate"] {
-        let answer = of_file("wins", "[contact]\ngamma = 1e5\n[design]\nmodulus = 1e8", &[command]);
-        assert!(answer.1.contains("given: [design] has no say in it"), "{answer:?}");
+        let answer = of_file(
+            "wins",
+            "[contact]\ngamma = 1e5\n[design]\nmodulus = 1e8",
+            &[command],
+        );
+        assert!(
+            answer.1.contains("given: [design] has no say in it"),
+            "{answer:?}"
+        );
     }
 }
 
 #[test]
 fn a_file_for_another_command_is_sent_there() {
     for (command, file, words) in [
-        ("derive", "examples/impact-soft.toml", "use `lindstedt impact`"),
-        ("compare", "examples/impact-soft.toml", "use `lindstedt impact`"),
-        ("derive", "examples/simulate/damper.toml", "`lindstedt simulate`"),
-        ("impact", "examples/simulate/damper.toml", "`lindstedt simulate`"),
-        ("impact", "examples/simulate/stick-slip.toml", "`lindstedt simulate`"),
+        (
+            "derive",
+            "examples/impact-soft.toml",
+            "use `lindstedt impact`",
+        ),
+        (
+            "compare",
+            "examples/impact-soft.toml",
+            "use `lindstedt impact`",
+        ),
+        (
+            "derive",
+            "examples/simulate/damper.toml",
+            "`lindstedt simulate`",
+        ),
+        (
+            "impact",
+            "examples/simulate/damper.toml",
+            "`lindstedt simulate`",
+        ),
+        (
+            "impact",
+            "examples/simulate/stick-slip.toml",
+            "`lindstedt simulate`",
+        ),
         ("impact", "examples/duffing.toml", "gamma=1e6"),
         ("simulate", "examples/duffing.toml", "`lindstedt derive`"),
-        ("simulate", "examples/impact-soft.toml", "`lindstedt impact`"),
+        (
+            "simulate",
+            "examples/impact-soft.toml",
+            "`lindstedt impact`",
+        ),
     ] {
         let path = format!("{}/{file}", env!("CARGO_MANIFEST_DIR"));
         let answer = run(&[command, &path]);

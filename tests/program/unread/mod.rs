@@ -1,5 +1,5 @@
-//! Nothing is silently ignored: every option of every command and every key of every file either changes what comes out or is
-//! refused by name.
+//! Nothing is silently ignored: every option of every command and every key of every file either
+//! changes what comes out or is refused by name.
 
 mod keys;
 mod options;
@@ -12,7 +12,11 @@ use std::process::{Command, Output};
 type Answer = (Option<i32>, String, String);
 
 fn run(arguments: &[&str]) -> Answer {
-    let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
         .args(arguments)
         .output()
         .expect("the program starts");
@@ -26,7 +30,10 @@ fn is_refused(answer: &Answer, word: &str) -> bool {
 
 /// A file of its own for each test.
 fn path(name: &str) -> PathBuf {
-    std::env::temp_dir().join(format!("lindstedt-unread-{name}-{}.toml", std::process::id()))
+    std::env::temp_dir().join(format!(
+        "lindstedt-unread-{name}-{}.toml",
+        std::process::id()
+    ))
 }
 
 fn of_file(name: &str, text: &str, arguments: &[&str]) -> Answer {

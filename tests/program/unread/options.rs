@@ -7,7 +7,10 @@ fn options_of(command: &str) -> Vec<String> {
     let help = run(&[command, "--help"]).1;
     let lines = help.lines().map(str::trim);
     let names = lines.filter_map(|line| {
-        let at = line.strip_prefix("-h, ").unwrap_or(line).strip_prefix("--")?;
+        let at = line
+            .strip_prefix("-h, ")
+            .unwrap_or(line)
+            .strip_prefix("--")?;
         at.split([' ', '=']).next().map(str::to_owned)
     });
     names.filter(|name| name != "help").collect()
@@ -17,7 +20,10 @@ fn options_of(command: &str) -> Vec<String> {
 const NO_TIME: &str = "1e-10";
 
 /// A file of claims.
-const AUDIT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/audit/frequencies.toml");
+const AUDIT: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/examples/audit/frequencies.toml"
+);
 
 #[test]
 fn every_option_changes_the_answer_or_is_refused_by_name() {
@@ -67,7 +73,11 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ),
         ("derive", vec![well], vec!["--about", "x=1"]),
         ("derive", vec![cubic], vec!["--taylor", "5"]),
-        ("derive", vec![cubic, "--method", "max-min"], vec!["--taylor", "5"]),
+        (
+            "derive",
+            vec![cubic, "--method", "max-min"],
+            vec!["--taylor", "5"],
+        ),
         (
             "derive",
             vec!["pendulum", "--method", "parameter-expansion"],
@@ -95,14 +105,26 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
             vec!["pendulum", "--method", "energy-balance"],
             vec!["--cycle", "1"],
         ),
-        ("derive", vec!["pendulum", "--method", "exact"], vec!["--order", "3"]),
+        (
+            "derive",
+            vec!["pendulum", "--method", "exact"],
+            vec!["--order", "3"],
+        ),
         ("derive", vec!["pendulum"], vec!["--at", "A=1"]),
         ("derive", vec!["pendulum"], vec!["--steps"]),
         ("derive", vec!["pendulum"], vec!["--format", "csv"]),
         ("derive", vec!["pendulum"], vec!["--format", "json"]),
         ("derive", vec!["pendulum"], vec!["--output", file]),
-        ("derive", vec!["pendulum", "--at", "A=1"], vec!["--plot", "-"]),
-        ("derive", vec!["pendulum", "--at", "A=1"], vec!["--tolerance", "1e-9"]),
+        (
+            "derive",
+            vec!["pendulum", "--at", "A=1"],
+            vec!["--plot", "-"],
+        ),
+        (
+            "derive",
+            vec!["pendulum", "--at", "A=1"],
+            vec!["--tolerance", "1e-9"],
+        ),
         (
             "derive",
             vec!["van-der-pol", "--order", "150", "--omega-only"],
@@ -121,13 +143,41 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
             vec![cubic, "--at", "eps=1", "--at", "A=1"],
             vec!["--small", "nu"],
         ),
-        ("compare", vec![well, "--at", "A=1/10"], vec!["--about", "x=1"]),
-        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--format", "csv"]),
-        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--format", "latex"]),
-        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--output", file]),
-        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--plot", "-"]),
-        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--tolerance", "1e-9"]),
-        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--timeout", NO_TIME]),
+        (
+            "compare",
+            vec![well, "--at", "A=1/10"],
+            vec!["--about", "x=1"],
+        ),
+        (
+            "compare",
+            vec!["pendulum", "--at", "A=1"],
+            vec!["--format", "csv"],
+        ),
+        (
+            "compare",
+            vec!["pendulum", "--at", "A=1"],
+            vec!["--format", "latex"],
+        ),
+        (
+            "compare",
+            vec!["pendulum", "--at", "A=1"],
+            vec!["--output", file],
+        ),
+        (
+            "compare",
+            vec!["pendulum", "--at", "A=1"],
+            vec!["--plot", "-"],
+        ),
+        (
+            "compare",
+            vec!["pendulum", "--at", "A=1"],
+            vec!["--tolerance", "1e-9"],
+        ),
+        (
+            "compare",
+            vec!["pendulum", "--at", "A=1"],
+            vec!["--timeout", NO_TIME],
+        ),
         ("compare", vec!["pendulum", "--at", "A=1"], vec!["--quiet"]),
         ("impact", vec![], vec!["--at", "A=1"]),
         ("impact", vec![], vec!["--method", "pade"]),
@@ -136,7 +186,11 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("impact", vec![], vec!["--force", "gamma*d^2"]),
         ("impact", vec![], vec!["--contact", "power-law"]),
         ("impact", vec![], vec!["--contact", "all"]),
-        ("impact", vec!["--compare"], vec!["--contact", "equal-energy"]),
+        (
+            "impact",
+            vec!["--compare"],
+            vec!["--contact", "equal-energy"],
+        ),
         ("impact", vec!["--compare"], vec!["--contact", "all"]),
         ("impact", vec![], vec!["--left"]),
         ("impact", vec![], vec!["--compare"]),
@@ -149,20 +203,40 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("impact", vec![], vec!["--certify"]),
         ("impact", vec![], vec!["--quiet"]),
         ("simulate", simulated[1..].to_vec(), vec!["--sample", "1"]),
-        ("simulate", simulated[1..].to_vec(), vec!["--integrator", "both"]),
+        (
+            "simulate",
+            simulated[1..].to_vec(),
+            vec!["--integrator", "both"],
+        ),
         ("simulate", simulated[1..].to_vec(), vec!["--chain"]),
         ("simulate", swept[1..].to_vec(), vec!["--chain"]),
         ("simulate", swept[1..].to_vec(), vec!["--baseline"]),
         ("simulate", simulated[1..].to_vec(), vec!["--baseline"]),
-        ("simulate", simulated[1..].to_vec(), vec!["--sweep", "zeta=0:1:2"]),
+        (
+            "simulate",
+            simulated[1..].to_vec(),
+            vec!["--sweep", "zeta=0:1:2"],
+        ),
         ("simulate", simulated[1..].to_vec(), vec!["--jobs", "1"]),
         ("simulate", swept[1..].to_vec(), vec!["--sample", "1"]),
-        ("simulate", swept[1..].to_vec(), vec!["--integrator", "both"]),
-        ("simulate", simulated[1..].to_vec(), vec!["--format", "latex"]),
+        (
+            "simulate",
+            swept[1..].to_vec(),
+            vec!["--integrator", "both"],
+        ),
+        (
+            "simulate",
+            simulated[1..].to_vec(),
+            vec!["--format", "latex"],
+        ),
         ("simulate", simulated[1..].to_vec(), vec!["--format", "csv"]),
         ("simulate", simulated[1..].to_vec(), vec!["--output", file]),
         ("simulate", simulated[1..].to_vec(), vec!["--plot", "-"]),
-        ("simulate", simulated[1..].to_vec(), vec!["--tolerance", "1e-15"]),
+        (
+            "simulate",
+            simulated[1..].to_vec(),
+            vec!["--tolerance", "1e-15"],
+        ),
         ("simulate", long[1..].to_vec(), vec!["--timeout", NO_TIME]),
         (
             "simulate",
@@ -229,7 +303,11 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("materials", vec![], vec!["--tolerance", "0.1"]),
         ("materials", vec![], vec!["--timeout", NO_TIME]),
         ("materials", vec![], vec!["--quiet"]),
-        ("optimize", vec!["--runs", "1", "--budget", "300"], vec!["--seed", "2"]),
+        (
+            "optimize",
+            vec!["--runs", "1", "--budget", "300"],
+            vec!["--seed", "2"],
+        ),
         ("optimize", vec!["--budget", "300"], vec!["--runs", "2"]),
         // The result is the same for any number of threads.
         ("optimize", vec!["--budget", "300"], vec!["--jobs", "0"]),
@@ -244,7 +322,11 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
             vec!["--runs", "1", "--budget", "300"],
             vec!["--resume", "-"],
         ),
-        ("optimize", vec!["--budget", "0.0000000001s"], vec!["--quiet"]),
+        (
+            "optimize",
+            vec!["--budget", "0.0000000001s"],
+            vec!["--quiet"],
+        ),
         (
             "optimize",
             vec!["--runs", "1", "--budget", "300"],
@@ -255,7 +337,11 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
             vec!["--runs", "1", "--budget", "300"],
             vec!["--output", file],
         ),
-        ("optimize", vec!["--runs", "1", "--budget", "300"], vec!["--plot", "-"]),
+        (
+            "optimize",
+            vec!["--runs", "1", "--budget", "300"],
+            vec!["--plot", "-"],
+        ),
         (
             "optimize",
             vec!["--runs", "1", "--budget", "300"],
@@ -273,7 +359,11 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ),
         ("response", driven[1..4].to_vec(), vec!["--at", "F=2"]),
         ("response", driven[1..].to_vec(), vec!["--method", "pade"]),
-        ("response", driven[1..].to_vec(), vec!["--method", "multiple-scales"]),
+        (
+            "response",
+            driven[1..].to_vec(),
+            vec!["--method", "multiple-scales"],
+        ),
         ("response", driven[1..].to_vec(), vec!["--order", "2"]),
         ("response", driven[1..].to_vec(), vec!["--periods", "2"]),
         ("response", driven[1..].to_vec(), vec!["--format", "csv"]),
@@ -349,7 +439,11 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         assert!(named, "{command} {beside:?} {option:?}: {answer:?}");
         // Most commands have nothing to say beside their result.
         if word == "quiet" && command != "schema" {
-            assert_eq!((answer.1, answer.2), (base.1, String::new()), "{command} {beside:?}");
+            assert_eq!(
+                (answer.1, answer.2),
+                (base.1, String::new()),
+                "{command} {beside:?}"
+            );
             continue;
         }
         assert!(
@@ -380,7 +474,10 @@ fn the_help_is_silent_on_a_tolerance_that_is_refused() {
         assert_eq!(listed, has_verdict, "{words:?}");
         if !has_verdict {
             let (status, _, error) = run(&[words, &["--tolerance", "0.1"]].concat());
-            assert!(status == Some(2) && error.contains("--tolerance"), "{words:?}: {error}");
+            assert!(
+                status == Some(2) && error.contains("--tolerance"),
+                "{words:?}: {error}"
+            );
         }
     }
 }

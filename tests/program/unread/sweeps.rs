@@ -23,15 +23,23 @@ fn grid(file: &str, swept: &[Parameter]) -> Result<Vec<(Model, Start)>, Simulate
                 };
                 // By another ratio each: gamma is that of modulus over mass.
                 let ratio = 1.2 + 0.01 * f64::from(parameter as u8);
-                case.set(parameter, if number >> bit & 1 == 0 { value } else { value * ratio });
+                case.set(
+                    parameter,
+                    if number >> bit & 1 == 0 {
+                        value
+                    } else {
+                        value * ratio
+                    },
+                );
             }
             Ok(case.motion()?)
         })
         .collect()
 }
 
-/// Every parameter alone and every pair, beside files that give what might override them: no two rows of a sweep are the
-/// same, or the refusal names what is swept and what it would be overridden by.
+/// Every parameter alone and every pair, beside files that give what might override them: no two
+/// rows of a sweep are the same, or the refusal names what is swept and what it would be overridden
+/// by.
 #[test]
 fn what_is_swept_changes_every_row_or_is_refused_with_both_names() {
     const FILES: [&str; 19] = [
@@ -73,8 +81,13 @@ fn what_is_swept_changes_every_row_or_is_refused_with_both_names() {
         for swept in singles.chain(pairs) {
             match grid(file, &swept) {
                 Ok(motions) => {
-                    let rows =
-                        sweep(&motions, lindstedt::impact::Integrator::Taylor, &settings, |_| ()).expect("motions");
+                    let rows = sweep(
+                        &motions,
+                        lindstedt::impact::Integrator::Taylor,
+                        &settings,
+                        |_| (),
+                    )
+                    .expect("motions");
                     for (index, row) in rows.iter().enumerate() {
                         assert!(
                             !rows[..index].contains(row),
@@ -89,8 +102,14 @@ fn what_is_swept_changes_every_row_or_is_refused_with_both_names() {
                         let mut words = text.split(|c: char| !(c.is_alphanumeric() || c == '_'));
                         words.any(|word| word == parameter.name())
                     };
-                    let named = Parameter::ALL.iter().filter(|parameter| says(parameter)).count();
-                    assert!(swept.iter().any(says) && named >= 2, "{file:?}, {swept:?}: {text}");
+                    let named = Parameter::ALL
+                        .iter()
+                        .filter(|parameter| says(parameter))
+                        .count();
+                    assert!(
+                        swept.iter().any(says) && named >= 2,
+                        "{file:?}, {swept:?}: {text}"
+                    );
                     refused += 1;
                 }
             }

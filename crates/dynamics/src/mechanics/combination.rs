@@ -1,7 +1,9 @@
-//! Sums of parameters that enter as one: of a ball that rolls in a bowl R - r alone, of two masses that move together m1 + m2.
+//! Sums of parameters that enter as one: of a ball that rolls in a bowl R - r alone, of two masses
+//! that move together m1 + m2.
 //!
-//! In: a mechanism, whose energies are written with such sums. Out: each [`Combination`] with a name of its own, where that leaves
-//! fewer parameters: one of the sum is replaced by the sum and the others, and one of the others is gone then.
+//! In: a mechanism, whose energies are written with such sums. Out: each [`Combination`] with a
+//! name of its own, where that leaves fewer parameters: one of the sum is replaced by the sum and
+//! the others, and one of the others is gone then.
 
 use std::collections::BTreeSet;
 
@@ -25,7 +27,12 @@ impl Combination {
     fn put_into(&self, expression: &Expr) -> Result<Expr, ExprError> {
         let (parameter, value) = &self.replaced;
         let put = expression.substitute(*parameter, value)?;
-        match self.meaning.symbols().into_iter().any(|name| put.contains(name)) {
+        match self
+            .meaning
+            .symbols()
+            .into_iter()
+            .any(|name| put.contains(name))
+        {
             // Products that were written out.
             true => put.expand(),
             false => Ok(put),
@@ -44,10 +51,17 @@ pub(super) fn put_into(expression: &Expr, combinations: &[Combination]) -> Resul
     combinations.iter().try_fold(expression.clone(), put)
 }
 
-/// An expression with every sum in the place of its name: a later one may be a sum with an earlier one.
-pub(super) fn written_out(expression: &Expr, combinations: &[Combination]) -> Result<Expr, ExprError> {
+/// An expression with every sum in the place of its name: a later one may be a sum with an earlier
+/// one.
+pub(super) fn written_out(
+    expression: &Expr,
+    combinations: &[Combination],
+) -> Result<Expr, ExprError> {
     let write = |expression: Expr, combination: &Combination| combination.written_out(&expression);
-    combinations.iter().rev().try_fold(expression.clone(), write)
+    combinations
+        .iter()
+        .rev()
+        .try_fold(expression.clone(), write)
 }
 
 /// The combinations of a mechanism, and the mechanism in them.
@@ -70,13 +84,19 @@ fn one_more(mechanism: &Mechanism) -> Result<Option<(Mechanism, Combination)>, E
         .filter(|node| node.symbols().iter().all(|name| parameters.contains(name)))
         .cloned()
         .collect();
-    let taken: Vec<Symbol> = parameters.iter().chain(&mechanism.coordinates).copied().collect();
+    let taken: Vec<Symbol> = parameters
+        .iter()
+        .chain(&mechanism.coordinates)
+        .copied()
+        .collect();
     let name = fresh("d", &taken);
     for sum in sums {
         for term in sum.terms() {
             let (number, factors) = term.factors();
             let [factor] = factors else { continue };
-            let Some(parameter) = factor.as_symbol() else { continue };
+            let Some(parameter) = factor.as_symbol() else {
+                continue;
+            };
             let others = &sum - term;
             if others.contains(parameter) {
                 continue;

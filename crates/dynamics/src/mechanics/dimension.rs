@@ -1,11 +1,13 @@
-//! Units of mechanics: what a quantity is measured in, and whether the terms of an energy can be added.
+//! Units of mechanics: what a quantity is measured in, and whether the terms of an energy can be
+//! added.
 //!
 //! ```text
 //! [quantity] = kg^a m^b s^c        kg^a m^b s^c + kg^a m^b s^c, never anything else;   sin(1), H(any), sgn(any)
 //! ```
 //!
-//! In: units as text, `"N*s/m^(3/2)"`, for every parameter and coordinate. Out: the [`Dimension`] of an expression, or the term
-//! that does not belong where it stands. Angles have none: a radian is 1.
+//! In: units as text, `"N*s/m^(3/2)"`, for every parameter and coordinate. Out: the [`Dimension`]
+//! of an expression, or the term that does not belong where it stands. Angles have none: a radian
+//! is 1.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -26,8 +28,8 @@ pub struct Dimension([Rational; 3]);
 /// The base units, in the order of the exponents.
 const BASE: [&str; 3] = ["kg", "m", "s"];
 
-/// Units that have names, by their exponents of kilogram, metre and second. Multiples such as millimetres would need factors
-/// that no check of dimensions could see: they are none of them.
+/// Units that have names, by their exponents of kilogram, metre and second. Multiples such as
+/// millimetres would need factors that no check of dimensions could see: they are none of them.
 const NAMED: [(&str, [i64; 3]); 12] = [
     ("1", [0, 0, 0]),
     ("rad", [0, 0, 0]),
@@ -176,9 +178,15 @@ impl fmt::Display for Dimension {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let write = |sign: bool| -> Vec<String> {
             let units = BASE.iter().zip(&self.0);
-            let units = units.filter(|(_, exponent)| !exponent.is_zero() && (**exponent > Rational::zero()) == sign);
+            let units = units.filter(|(_, exponent)| {
+                !exponent.is_zero() && (**exponent > Rational::zero()) == sign
+            });
             let unit = |(name, exponent): (&&str, &Rational)| {
-                let exponent = if sign { exponent.clone() } else { -exponent.clone() };
+                let exponent = if sign {
+                    exponent.clone()
+                } else {
+                    -exponent.clone()
+                };
                 match (exponent.is_one(), exponent.is_integer()) {
                     (true, _) => (*name).to_owned(),
                     (false, true) => format!("{name}^{exponent}"),
@@ -219,7 +227,8 @@ impl FromStr for Dimension {
         })?;
         let mut units = BTreeMap::new();
         for symbol in expression.symbols() {
-            let Some((_, exponents)) = NAMED.iter().find(|(named, _)| *named == symbol.name()) else {
+            let Some((_, exponents)) = NAMED.iter().find(|(named, _)| *named == symbol.name())
+            else {
                 return Err(UnitError::Unknown {
                     name: name(),
                     unit: symbol.name().to_owned(),
@@ -244,7 +253,11 @@ impl FromStr for Dimension {
 ///
 /// # Errors
 /// [`UnitError`] names the term; `part` is where it stands.
-pub fn dimension(expression: &Expr, units: &BTreeMap<Symbol, Dimension>, part: &str) -> Result<Dimension, UnitError> {
+pub fn dimension(
+    expression: &Expr,
+    units: &BTreeMap<Symbol, Dimension>,
+    part: &str,
+) -> Result<Dimension, UnitError> {
     let part = || part.to_owned();
     expression.fold(|expr, below: &[Dimension]| match expr.node() {
         Node::Number(_) | Node::Pi => Ok(Dimension::none()),
@@ -255,7 +268,9 @@ pub fn dimension(expression: &Expr, units: &BTreeMap<Symbol, Dimension>, part: &
             .fold(Dimension::none(), |product, factor| product.times(factor))),
         Node::Power(_, exponent) => match (below, exponent.as_number()) {
             ([base, _], Some(number)) => Ok(base.power(number)),
-            ([base, exponent], None) if base.is_none() && exponent.is_none() => Ok(Dimension::none()),
+            ([base, exponent], None) if base.is_none() && exponent.is_none() => {
+                Ok(Dimension::none())
+            }
             _ => Err(UnitError::Power {
                 part: part(),
                 term: expr.clone(),
@@ -266,9 +281,13 @@ pub fn dimension(expression: &Expr, units: &BTreeMap<Symbol, Dimension>, part: &
         Node::Function(Function::Sign | Function::Step, _) => Ok(Dimension::none()),
         // Zero is zero in any unit.
         Node::Function(Function::Maximum | Function::Minimum, arguments) => {
-            let kept = arguments.iter().zip(below).filter(|(argument, _)| !argument.is_zero());
-            let (arguments, below): (Vec<Expr>, Vec<Dimension>) =
-                kept.map(|(one, other)| (one.clone(), other.clone())).unzip();
+            let kept = arguments
+                .iter()
+                .zip(below)
+                .filter(|(argument, _)| !argument.is_zero());
+            let (arguments, below): (Vec<Expr>, Vec<Dimension>) = kept
+                .map(|(one, other)| (one.clone(), other.clone()))
+                .unzip();
             odd_one_out(&arguments, &below, &part())
         }
         Node::Function(..) => match below.iter().find(|argument| !argument.is_none()) {
@@ -291,7 +310,11 @@ fn odd_one_out(terms: &[Expr], found: &[Dimension], part: &str) -> Result<Dimens
         .max_by_key(|dimension| votes(dimension))
         .cloned()
         .unwrap_or_default();
-    match terms.iter().zip(found).find(|(_, found)| **found != expected) {
+    match terms
+        .iter()
+        .zip(found)
+        .find(|(_, found)| **found != expected)
+    {
         None => Ok(expected),
         Some((term, found)) => Err(UnitError::Term {
             part: part.to_owned(),
@@ -328,15 +351,21 @@ pub fn check(
 }
 
 impl Mechanism {
-    /// The units of parameters and coordinates with those that follow: of velocities, accelerations and time.
+    /// The units of parameters and coordinates with those that follow: of velocities, accelerations
+    /// and time.
     pub fn all_units(&self, units: &BTreeMap<Symbol, Dimension>) -> BTreeMap<Symbol, Dimension> {
         let per_second = Dimension::of([0, 0, -1]);
         let mut all = units.clone();
         all.insert(Symbol::new("t"), Dimension::of([0, 0, 1]));
         for coordinate in &self.coordinates {
-            let Some(own) = units.get(coordinate) else { continue };
+            let Some(own) = units.get(coordinate) else {
+                continue;
+            };
             let velocity = own.times(&per_second);
-            all.insert(coordinate.derivative().derivative(), velocity.times(&per_second));
+            all.insert(
+                coordinate.derivative().derivative(),
+                velocity.times(&per_second),
+            );
             all.insert(coordinate.derivative(), velocity);
         }
         all
@@ -392,7 +421,8 @@ impl Equations {
     /// Checks every term of the printed equations against the others of its equation.
     ///
     /// # Errors
-    /// The first term that is measured in something else; with energies that passed, an error of ours.
+    /// The first term that is measured in something else; with energies that passed, an error of
+    /// ours.
     pub fn check_units(&self, all_units: &BTreeMap<Symbol, Dimension>) -> Result<(), UnitError> {
         for left in &self.left {
             let written_out = left.expand()?;
@@ -424,7 +454,10 @@ mod tests {
         ] {
             let dimension: Dimension = typed.parse().unwrap();
             assert_eq!(dimension.to_string(), printed, "{typed}");
-            assert_eq!(dimension.to_string().parse::<Dimension>().unwrap(), dimension);
+            assert_eq!(
+                dimension.to_string().parse::<Dimension>().unwrap(),
+                dimension
+            );
         }
         for wrong in ["mm", "kg + m", "3*kg", "sin(kg)", "kg^m", "", "kg*"] {
             assert!(wrong.parse::<Dimension>().is_err(), "{wrong}");
@@ -433,10 +466,13 @@ mod tests {
 
     #[test]
     fn a_term_of_another_unit_is_named() {
-        let units: BTreeMap<Symbol, Dimension> = [("L", "m"), ("g", "m/s^2"), ("m", "kg"), ("v", "m/s")]
-            .map(|(name, unit)| (Symbol::new(name), unit.parse().unwrap()))
-            .into();
-        let of = |text: &str| dimension(&text.parse().unwrap(), &units, "sum").map(|found| found.to_string());
+        let units: BTreeMap<Symbol, Dimension> =
+            [("L", "m"), ("g", "m/s^2"), ("m", "kg"), ("v", "m/s")]
+                .map(|(name, unit)| (Symbol::new(name), unit.parse().unwrap()))
+                .into();
+        let of = |text: &str| {
+            dimension(&text.parse().unwrap(), &units, "sum").map(|found| found.to_string())
+        };
         assert_eq!(of("m*v^2/2 + m*g*L").unwrap(), "kg m^2/s^2");
         assert_eq!(of("sqrt(g/L)").unwrap(), "1/s");
         assert_eq!(of("max(L, v^2/g)").unwrap(), "m");

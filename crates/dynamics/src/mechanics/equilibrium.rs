@@ -1,8 +1,9 @@
 //! Where a mechanism can rest: `dV/dq_i - Q_i = 0` with every velocity zero.
 //!
-//! Exactly, in three steps, and never more than is known: angles are tried at 0 and pi; what then enters linearly is solved for; of
-//! a single angle whose force is `sin(q)*(a + b*cos(q))` the places `cos(q) = -a/b` beside them. Terms in the time and contacts
-//! (those with `H`) are left out: the places are those of the undriven mechanism away from its barriers.
+//! Exactly, in three steps, and never more than is known: angles are tried at 0 and pi; what then
+//! enters linearly is solved for; of a single angle whose force is `sin(q)*(a + b*cos(q))` the
+//! places `cos(q) = -a/b` beside them. Terms in the time and contacts (those with `H`) are left
+//! out: the places are those of the undriven mechanism away from its barriers.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -24,7 +25,8 @@ pub enum Place {
 pub struct Rest {
     /// The place of each coordinate.
     pub places: Vec<Place>,
-    /// Under which condition it exists, in the parameters: `-1 <= this <= 1`; always where there is none.
+    /// Under which condition it exists, in the parameters: `-1 <= this <= 1`; always where there is
+    /// none.
     pub condition: Option<Expr>,
 }
 
@@ -35,11 +37,16 @@ impl Rest {
             Place::At(place) => place.clone(),
             Place::Anywhere => Expr::zero(),
         };
-        coordinates.iter().copied().zip(self.places.iter().map(place)).collect()
+        coordinates
+            .iter()
+            .copied()
+            .zip(self.places.iter().map(place))
+            .collect()
     }
 }
 
-/// The states of rest that are found, an upright or folded pendulum among them; others are not ruled out.
+/// The states of rest that are found, an upright or folded pendulum among them; others are not
+/// ruled out.
 ///
 /// # Errors
 /// Forces too long to be written out.
@@ -85,15 +92,25 @@ pub fn equilibria(equations: &Equations) -> Result<Vec<Rest>, MechanicsError> {
         }
     }
     // What does not follow linearly may still rest at zero.
-    let zero: BTreeMap<Symbol, Expr> = coordinates.iter().map(|name| (*name, Expr::zero())).collect();
-    let rests = |force: &Expr| force.substitute_all(&zero).and_then(|force| simplified(&force));
+    let zero: BTreeMap<Symbol, Expr> = coordinates
+        .iter()
+        .map(|name| (*name, Expr::zero()))
+        .collect();
+    let rests = |force: &Expr| {
+        force
+            .substitute_all(&zero)
+            .and_then(|force| simplified(&force))
+    };
     if found.is_empty()
         && forces
             .iter()
             .all(|force| rests(force).is_ok_and(|force| force.is_zero()))
     {
         found.push(Rest {
-            places: coordinates.iter().map(|_| Place::At(Expr::zero())).collect(),
+            places: coordinates
+                .iter()
+                .map(|_| Place::At(Expr::zero()))
+                .collect(),
             condition: None,
         });
     }
@@ -121,7 +138,8 @@ pub fn equilibria(equations: &Equations) -> Result<Vec<Rest>, MechanicsError> {
 pub enum Drive {
     /// There are none.
     Absent,
-    /// They vanish there, as what shakes the pivot of a pendulum upright does: it is a rest, whose swings they change.
+    /// They vanish there, as what shakes the pivot of a pendulum upright does: it is a rest, whose
+    /// swings they change.
     Vanishes,
     /// They act: it is no rest where they do.
     Acts,
@@ -142,14 +160,23 @@ impl Equations {
             .collect();
         there.extend(names.map(|name| (name.derivative(), Expr::zero())));
         let mut drive = Drive::Absent;
-        for rest in self.rest.iter().filter(|rest| rest.contains(Symbol::new("t"))) {
+        for rest in self
+            .rest
+            .iter()
+            .filter(|rest| rest.contains(Symbol::new("t")))
+        {
             let written_out = rest.expand()?;
             let terms = written_out.terms().iter();
-            let driving: Expr = terms.filter(|term| term.contains(Symbol::new("t"))).cloned().sum();
+            let driving: Expr = terms
+                .filter(|term| term.contains(Symbol::new("t")))
+                .cloned()
+                .sum();
             if driving.is_zero() {
                 continue;
             }
-            let acts = driving.substitute_all(&there).and_then(|driving| simplified(&driving));
+            let acts = driving
+                .substitute_all(&there)
+                .and_then(|driving| simplified(&driving));
             if !acts.is_ok_and(|driving| driving.is_zero()) {
                 return Ok(Drive::Acts);
             }
@@ -177,7 +204,8 @@ impl Equations {
 pub(super) fn undriven(expression: &Expr) -> Result<Expr, ExprError> {
     let written_out = expression.expand()?;
     let kept = written_out.terms().iter();
-    let kept = kept.filter(|term| !term.contains(Symbol::new("t")) && !term.contains_function(Function::Step));
+    let kept = kept
+        .filter(|term| !term.contains(Symbol::new("t")) && !term.contains_function(Function::Step));
     Ok(kept.cloned().sum())
 }
 
@@ -193,8 +221,8 @@ fn is_angle(name: Symbol, forces: &[Expr]) -> bool {
     forces.iter().any(|force| force.contains(name)) && !forces.iter().any(outside)
 }
 
-/// The places of all coordinates, with the angles where they were put; nothing where the others do not follow linearly, or a force
-/// is left over.
+/// The places of all coordinates, with the angles where they were put; nothing where the others do
+/// not follow linearly, or a force is left over.
 fn linear_places(
     coordinates: &[Symbol],
     forces: &[Expr],
@@ -224,7 +252,8 @@ fn linear_places(
         if slope.contains(name) {
             return Ok(None);
         }
-        let (Ok(without), false) = (open[row].substitute(name, &Expr::zero()), slope.is_zero()) else {
+        let (Ok(without), false) = (open[row].substitute(name, &Expr::zero()), slope.is_zero())
+        else {
             return Ok(None);
         };
         let value = -Expr::divide(&without, &slope)?.expand()?;

@@ -5,11 +5,13 @@
 //! Pi_p = p / (b_1^e_1 ... b_r^e_r)     b: as many parameters as give the units, first of inertia, then of stiffness
 //! ```
 //!
-//! (E. Buckingham, *Phys. Rev.* 4 (1914) 345.) Where no product of parameters has the unit of a coordinate, as of a mass on a linear
-//! spring, the size of the motion is a unit: any length serves, `x0` for the coordinate `x`. The equations in the units b are those with every b = 1; then a product of powers
-//! that always stands together is one group: an equation often depends on fewer numbers than the theorem allows. A group has the
-//! name of what it stands before: `zeta` (twice) a velocity, `alpha` its sign, `beta` an excitation, `eta` its frequency, `gamma`
-//! and `mu` a contact and its damping; any other is `Pi1`, `Pi2`, ...
+//! (E. Buckingham, *Phys. Rev.* 4 (1914) 345.) Where no product of parameters has the unit of a
+//! coordinate, as of a mass on a linear spring, the size of the motion is a unit: any length
+//! serves, `x0` for the coordinate `x`. The equations in the units b are those with every b = 1;
+//! then a product of powers that always stands together is one group: an equation often depends on
+//! fewer numbers than the theorem allows. A group has the name of what it stands before: `zeta`
+//! (twice) a velocity, `alpha` its sign, `beta` an excitation, `eta` its frequency, `gamma` and
+//! `mu` a contact and its damping; any other is `Pi1`, `Pi2`, ...
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -30,7 +32,8 @@ pub struct Groups {
     pub rank: usize,
     /// The parameters that give the units, one for each rank, and the sizes of the motion that do.
     pub units: Vec<Symbol>,
-    /// The coordinates of whose unit no product of parameters is, and the name of their size, which is a unit in its place.
+    /// The coordinates of whose unit no product of parameters is, and the name of their size, which
+    /// is a unit in its place.
     pub sizes: Vec<(Symbol, Symbol)>,
     /// The sums of parameters that count as one, by the names that they have here.
     pub combinations: Vec<Combination>,
@@ -102,7 +105,8 @@ impl Groups {
         };
         let mut units = units.clone();
         for combination in &equations.combinations {
-            let unit = super::dimension::dimension(&combination.meaning, &units, "sum").unwrap_or_default();
+            let unit = super::dimension::dimension(&combination.meaning, &units, "sum")
+                .unwrap_or_default();
             units.insert(combination.name, unit);
         }
         let left = combined(&equations.left)?;
@@ -120,7 +124,11 @@ impl Groups {
         for coordinate in &equations.coordinates {
             let unit = dimension_of(*coordinate);
             if basis.exponents(&unit).is_none() {
-                let taken: Vec<Symbol> = parameters.iter().chain(&equations.coordinates).copied().collect();
+                let taken: Vec<Symbol> = parameters
+                    .iter()
+                    .chain(&equations.coordinates)
+                    .copied()
+                    .collect();
                 let size = fresh(&format!("{coordinate}0"), &taken);
                 basis.members.push((size, unit));
                 sizes.push((*coordinate, size));
@@ -144,17 +152,24 @@ impl Groups {
                 .chain(sizes.iter().map(|(_, size)| *size))
                 .collect(),
         };
-        let ones: BTreeMap<Symbol, Expr> = basis.members.iter().map(|(name, _)| (*name, Expr::one())).collect();
+        let ones: BTreeMap<Symbol, Expr> = basis
+            .members
+            .iter()
+            .map(|(name, _)| (*name, Expr::one()))
+            .collect();
         for left in &left {
-            scaling
-                .left
-                .push(positive_factors_out(&left.expand()?.substitute_all(&ones)?, equations)?.expand()?);
+            scaling.left.push(
+                positive_factors_out(&left.expand()?.substitute_all(&ones)?, equations)?
+                    .expand()?,
+            );
         }
         // A parameter without a unit is a group already.
         let plain = |name: &&Symbol| dimension_of(**name).is_none();
         scaling.taken.extend(parameters.iter().filter(plain));
         for name in parameters.iter().filter(plain) {
-            scaling.groups.push((*name, Expr::from(*name), "as given".to_owned()));
+            scaling
+                .groups
+                .push((*name, Expr::from(*name), "as given".to_owned()));
         }
         scaling.collect(equations)?;
         units.extend(
@@ -170,7 +185,8 @@ impl Groups {
             let definition = basis.in_parameters(scaled, dimension_of)?;
             groups.push(Group {
                 name: *name,
-                dimension: super::dimension::dimension(&definition, &units, "group").unwrap_or_default(),
+                dimension: super::dimension::dimension(&definition, &units, "group")
+                    .unwrap_or_default(),
                 definition,
                 meaning: meaning.clone(),
             });
@@ -194,10 +210,15 @@ fn names(parameters: &[Symbol]) -> String {
     names.join(", ")
 }
 
-/// The parameters in the order in which they are taken for units: those of inertia, of stiffness, all others.
+/// The parameters in the order in which they are taken for units: those of inertia, of stiffness,
+/// all others.
 fn preferred(inertia: &[Expr], stiffness: &[Expr], parameters: &[Symbol]) -> Vec<Symbol> {
-    let [inertia, stiffness] =
-        [inertia, stiffness].map(|parts| parts.iter().flat_map(Expr::symbols).collect::<BTreeSet<_>>());
+    let [inertia, stiffness] = [inertia, stiffness].map(|parts| {
+        parts
+            .iter()
+            .flat_map(Expr::symbols)
+            .collect::<BTreeSet<_>>()
+    });
     let place = |name: &Symbol| match (inertia.contains(name), stiffness.contains(name)) {
         (true, _) => 0,
         (false, true) => 1,
@@ -208,8 +229,8 @@ fn preferred(inertia: &[Expr], stiffness: &[Expr], parameters: &[Symbol]) -> Vec
     ordered
 }
 
-/// Positive parameters taken out of roots: `(l*u)^(3/2) = l^(3/2)*u^(3/2)`, also where `l` is common to the terms of a sum. What has
-/// a unit is positive.
+/// Positive parameters taken out of roots: `(l*u)^(3/2) = l^(3/2)*u^(3/2)`, also where `l` is
+/// common to the terms of a sum. What has a unit is positive.
 fn positive_factors_out(expression: &Expr, equations: &Equations) -> Result<Expr, ExprError> {
     expression.fold(|expr, children: &[Expr]| {
         let whole = expr.with_children(children)?;
@@ -225,7 +246,10 @@ fn positive_factors_out(expression: &Expr, equations: &Equations) -> Result<Expr
             let (base, own) = factor.base_and_exponent();
             Expr::power(&base, &(&own * exponent))
         });
-        let outside: Expr = outside.collect::<Result<Vec<_>, _>>()?.into_iter().product();
+        let outside: Expr = outside
+            .collect::<Result<Vec<_>, _>>()?
+            .into_iter()
+            .product();
         Ok(outside * Expr::power(&left, exponent)?)
     })
 }
@@ -238,7 +262,9 @@ struct Basis {
 impl Basis {
     /// The first parameters that are independent.
     fn of(ordered: &[Symbol], dimension_of: impl Fn(Symbol) -> Dimension) -> Self {
-        let mut basis = Self { members: Vec::new() };
+        let mut basis = Self {
+            members: Vec::new(),
+        };
         for name in ordered {
             let dimension = dimension_of(*name);
             if basis.exponents(&dimension).is_none() {
@@ -251,11 +277,17 @@ impl Basis {
     /// The powers of the members whose product has this dimension; nothing where there is none.
     fn exponents(&self, dimension: &Dimension) -> Option<Vec<Rational>> {
         let width = self.members.len();
-        // A row for each base unit, a column for each member, and the right side: eliminated exactly.
+        // A row for each base unit, a column for each member, and the right side: eliminated
+        // exactly.
         let mut rows: Vec<Vec<Rational>> = (0..3)
             .map(|unit| {
-                let members = self.members.iter().map(|(_, own)| own.exponents()[unit].clone());
-                members.chain([dimension.exponents()[unit].clone()]).collect()
+                let members = self
+                    .members
+                    .iter()
+                    .map(|(_, own)| own.exponents()[unit].clone());
+                members
+                    .chain([dimension.exponents()[unit].clone()])
+                    .collect()
             })
             .collect();
         let mut done = 0;
@@ -292,16 +324,22 @@ impl Basis {
         let Some(exponents) = self.exponents(dimension) else {
             return Ok(None);
         };
-        let power = |((name, _), exponent): (&(Symbol, Dimension), &Rational)| match exponent.is_zero() {
-            true => Ok(Expr::one()),
-            false => Expr::power(&Expr::from(*name), &Expr::number(exponent.clone())),
-        };
-        let factors: Result<Vec<Expr>, ExprError> = self.members.iter().zip(&exponents).map(power).collect();
+        let power =
+            |((name, _), exponent): (&(Symbol, Dimension), &Rational)| match exponent.is_zero() {
+                true => Ok(Expr::one()),
+                false => Expr::power(&Expr::from(*name), &Expr::number(exponent.clone())),
+            };
+        let factors: Result<Vec<Expr>, ExprError> =
+            self.members.iter().zip(&exponents).map(power).collect();
         factors.map(|factors| Some(Expr::product(factors)))
     }
 
     /// What is written in scaled parameters, in the parameters themselves.
-    fn in_parameters(&self, scaled: &Expr, dimension_of: impl Fn(Symbol) -> Dimension) -> Result<Expr, ExprError> {
+    fn in_parameters(
+        &self,
+        scaled: &Expr,
+        dimension_of: impl Fn(Symbol) -> Dimension,
+    ) -> Result<Expr, ExprError> {
         let mut values = BTreeMap::new();
         for name in scaled.symbols() {
             if let Some(unit) = self.express(&dimension_of(name))? {
@@ -345,7 +383,11 @@ impl Scaling<'_> {
                     Rational::one(),
                     "frequency of the excitation over that of the unit of time",
                 ),
-                Role::Viscous => ("zeta", Rational::new(1.into(), 2.into()), "viscous damping ratio"),
+                Role::Viscous => (
+                    "zeta",
+                    Rational::new(1.into(), 2.into()),
+                    "viscous damping ratio",
+                ),
                 Role::Dry => ("alpha", Rational::one(), "dry friction"),
                 Role::Excitation => ("beta", Rational::one(), "excitation"),
                 Role::Contact => ("gamma", Rational::one(), "stiffness of the contact"),
@@ -359,7 +401,8 @@ impl Scaling<'_> {
                 Role::Other => Symbol::new(&format!("{wanted}{counted}")),
                 _ => Symbol::new(wanted),
             };
-            // Names of parameters that are used for units, or have been replaced, stay theirs: definitions are written with them.
+            // Names of parameters that are used for units, or have been replaced, stay theirs:
+            // definitions are written with them.
             let parameters = equations.parameters();
             let taken: Vec<Symbol> = self
                 .taken
@@ -395,7 +438,8 @@ impl Scaling<'_> {
             && !self.basis.members.iter().any(|(own, _)| *own == name)
     }
 
-    /// The next product of parameters that stands before something, with its number, and what it stands before.
+    /// The next product of parameters that stands before something, with its number, and what it
+    /// stands before.
     fn next(&self, equations: &Equations) -> Option<(Expr, Role)> {
         let open = |expression: &Expr| {
             expression
@@ -415,7 +459,8 @@ impl Scaling<'_> {
             };
             for term in arguments.iter().flat_map(Expr::terms) {
                 let (number, factors) = term.factors();
-                let (before, rest): (Vec<&Expr>, Vec<&Expr>) = factors.iter().partition(|factor| constant(factor));
+                let (before, rest): (Vec<&Expr>, Vec<&Expr>) =
+                    factors.iter().partition(|factor| constant(factor));
                 let is_time = rest
                     .iter()
                     .all(|factor| factor.as_symbol().is_some_and(|name| name.name() == "t"));
@@ -431,7 +476,8 @@ impl Scaling<'_> {
         }
         for term in self.left.iter().flat_map(Expr::terms) {
             let (number, factors) = term.factors();
-            let (before, rest): (Vec<&Expr>, Vec<&Expr>) = factors.iter().partition(|factor| constant(factor));
+            let (before, rest): (Vec<&Expr>, Vec<&Expr>) =
+                factors.iter().partition(|factor| constant(factor));
             let product = Expr::product(
                 [Expr::number(number.abs())]
                     .into_iter()
@@ -442,7 +488,10 @@ impl Scaling<'_> {
             }
         }
         // What stands inside of something else, such as the place of a barrier, one by one.
-        let name = self.symbols().into_iter().find(|name| self.is_open(*name, equations))?;
+        let name = self
+            .symbols()
+            .into_iter()
+            .find(|name| self.is_open(*name, equations))?;
         Some((Expr::from(name), Role::Other))
     }
 
@@ -457,14 +506,19 @@ impl Scaling<'_> {
             ))
         };
         let parameters: Vec<(Symbol, Rational)> = factors.iter().filter_map(parameter).collect();
-        // One that occurs nowhere else is gone then, one that stands alone in its power is replaced without a root.
+        // One that occurs nowhere else is gone then, one that stands alone in its power is replaced
+        // without a root.
         let occurrences = |name: Symbol| {
             let terms = self.left.iter().flat_map(Expr::terms);
             terms.filter(|term| term.contains(name)).count()
         };
-        let simplest = parameters
-            .iter()
-            .min_by_key(|(name, exponent)| (occurrences(*name), !exponent.abs().is_one(), exponent.is_negative()));
+        let simplest = parameters.iter().min_by_key(|(name, exponent)| {
+            (
+                occurrences(*name),
+                !exponent.abs().is_one(),
+                exponent.is_negative(),
+            )
+        });
         let Some((replaced, exponent)) = simplest.cloned() else {
             return Ok(());
         };
@@ -475,10 +529,16 @@ impl Scaling<'_> {
         let value = Expr::divide(&Expr::from(name), &others)?;
         let inverse = Rational::one() / exponent;
         let (number, inner) = value.factors();
-        let mut product = vec![Expr::power(&Expr::number(number), &Expr::number(inverse.clone()))?];
+        let mut product = vec![Expr::power(
+            &Expr::number(number),
+            &Expr::number(inverse.clone()),
+        )?];
         for part in inner {
             let (part, own) = part.base_and_exponent();
-            product.push(Expr::power(&part, &(&own * &Expr::number(inverse.clone())))?);
+            product.push(Expr::power(
+                &part,
+                &(&own * &Expr::number(inverse.clone())),
+            )?);
         }
         let value = Expr::product(product);
         for left in &mut self.left {

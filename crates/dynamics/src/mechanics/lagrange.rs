@@ -26,8 +26,8 @@ pub struct Equations {
     pub mass: Vec<Vec<Expr>>,
     /// h, what stands beside the accelerations on the left side.
     pub rest: Vec<Expr>,
-    /// The left sides as people print them: the factor that all terms have in common is divided out; `x'' + ...` where the inertia
-    /// is a number or a product of parameters.
+    /// The left sides as people print them: the factor that all terms have in common is divided
+    /// out; `x'' + ...` where the inertia is a number or a product of parameters.
     pub left: Vec<Expr>,
     /// What each was divided by; parameters are taken not to vanish.
     pub divisors: Vec<Expr>,
@@ -87,9 +87,12 @@ pub(super) fn equations(mechanism: &Mechanism) -> Result<Equations, MechanicsErr
     Ok(equations)
 }
 
-/// A step or a sign by which an energy jumps: one beside which no factor vanishes with its argument.
+/// A step or a sign by which an energy jumps: one beside which no factor vanishes with its
+/// argument.
 pub(super) fn jump(energy: &Expr, coordinates: &[Symbol]) -> Option<Expr> {
-    let steps = |expr: &Expr| expr.contains_function(Function::Step) || expr.contains_function(Function::Sign);
+    let steps = |expr: &Expr| {
+        expr.contains_function(Function::Step) || expr.contains_function(Function::Sign)
+    };
     // What is still to be looked at, with the factors that stand beside it.
     let mut open: Vec<(Expr, Vec<Expr>)> = vec![(energy.clone(), vec![])];
     while let Some((expr, beside)) = open.pop() {
@@ -99,14 +102,28 @@ pub(super) fn jump(energy: &Expr, coordinates: &[Symbol]) -> Option<Expr> {
                     .symbols()
                     .into_iter()
                     .any(|name| coordinates.contains(&name.coordinate()));
-                if of_motion && !beside.iter().any(|factor| vanishes_with(factor, &arguments[0])) {
+                if of_motion
+                    && !beside
+                        .iter()
+                        .any(|factor| vanishes_with(factor, &arguments[0]))
+                {
                     return Some(expr);
                 }
             }
             Node::Product(_, factors) => {
-                for (index, factor) in factors.iter().enumerate().filter(|(_, factor)| steps(factor)) {
-                    let others = factors.iter().enumerate().filter(|(other, _)| *other != index);
-                    let beside = beside.iter().cloned().chain(others.map(|(_, factor)| factor.clone()));
+                for (index, factor) in factors
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, factor)| steps(factor))
+                {
+                    let others = factors
+                        .iter()
+                        .enumerate()
+                        .filter(|(other, _)| *other != index);
+                    let beside = beside
+                        .iter()
+                        .cloned()
+                        .chain(others.map(|(_, factor)| factor.clone()));
                     open.push((factor.clone(), beside.collect()));
                 }
             }
@@ -120,7 +137,8 @@ pub(super) fn jump(energy: &Expr, coordinates: &[Symbol]) -> Option<Expr> {
     None
 }
 
-/// Whether a factor is zero where u is: a positive power of u, of its sine, or of a multiple of them.
+/// Whether a factor is zero where u is: a positive power of u, of its sine, or of a multiple of
+/// them.
 fn vanishes_with(factor: &Expr, u: &Expr) -> bool {
     let (base, exponent) = factor.base_and_exponent();
     let positive = exponent
@@ -128,11 +146,21 @@ fn vanishes_with(factor: &Expr, u: &Expr) -> bool {
         .is_some_and(|exponent| *exponent > Rational::zero());
     let same = |expression: &Expr| {
         let multiple = |name: Symbol| {
-            let (above, below) = (expression.differentiate(name).ok()?, u.differentiate(name).ok()?);
+            let (above, below) = (
+                expression.differentiate(name).ok()?,
+                u.differentiate(name).ok()?,
+            );
             let ratio = Expr::divide(&above, &below).ok()?;
-            Some(!ratio.is_zero() && !ratio.contains(name) && (expression - &(&ratio * u)).expand().ok()?.is_zero())
+            Some(
+                !ratio.is_zero()
+                    && !ratio.contains(name)
+                    && (expression - &(&ratio * u)).expand().ok()?.is_zero(),
+            )
         };
-        expression == u || u.symbols().into_iter().any(|name| multiple(name) == Some(true))
+        expression == u
+            || u.symbols()
+                .into_iter()
+                .any(|name| multiple(name) == Some(true))
     };
     let of_wave = match base.node() {
         Node::Function(Function::Sin | Function::Absolute, arguments) => same(&arguments[0]),
@@ -146,7 +174,11 @@ impl Equations {
     /// The equations of a mechanism in these combinations, with what those are in their places.
     pub(super) fn written_out(mut self, combinations: Vec<Combination>) -> Result<Self, ExprError> {
         let entries = self.mass.iter_mut().flatten();
-        let others = self.rest.iter_mut().chain(&mut self.left).chain(&mut self.divisors);
+        let others = self
+            .rest
+            .iter_mut()
+            .chain(&mut self.left)
+            .chain(&mut self.divisors);
         for entry in entries.chain(others) {
             *entry = written_out(entry, &combinations)?;
         }
@@ -159,7 +191,8 @@ impl Equations {
         put_into(expression, &self.combinations)
     }
 
-    /// The accelerations, solved for: quotients in coordinates, velocities, time and parameters, not written out.
+    /// The accelerations, solved for: quotients in coordinates, velocities, time and parameters,
+    /// not written out.
     ///
     /// # Errors
     /// A mass matrix that is singular.
@@ -173,7 +206,10 @@ impl Equations {
     /// The names that are neither coordinates, their derivatives nor time, in alphabetical order.
     pub fn parameters(&self) -> Vec<Symbol> {
         let names: BTreeSet<Symbol> = self.left.iter().flat_map(Expr::symbols).collect();
-        names.into_iter().filter(|name| self.is_parameter(*name)).collect()
+        names
+            .into_iter()
+            .filter(|name| self.is_parameter(*name))
+            .collect()
     }
 
     /// Whether a name is neither a coordinate, a derivative of one nor time.
@@ -188,7 +224,10 @@ impl Equations {
             .coordinates
             .iter()
             .map(|name| Expr::from(name.derivative().derivative()));
-        let rest = self.rest[index].terms().iter().filter(|term| !term.is_zero());
+        let rest = self.rest[index]
+            .terms()
+            .iter()
+            .filter(|term| !term.is_zero());
         let terms: Vec<&Expr> = inertia
             .iter()
             .flat_map(Expr::terms)
@@ -196,10 +235,11 @@ impl Equations {
             .chain(rest)
             .collect();
         let own = inertia[index].expand()?;
-        let divisor = match own.terms().len() == 1 && self.is_constant(&own) && self.coordinates.len() == 1 {
-            true => own,
-            false => self.common(&terms)?,
-        };
+        let divisor =
+            match own.terms().len() == 1 && self.is_constant(&own) && self.coordinates.len() == 1 {
+                true => own,
+                false => self.common(&terms)?,
+            };
         let mut left = Vec::new();
         for (entry, acceleration) in inertia.iter().zip(accelerations) {
             let coefficient = Expr::divide(entry, &divisor)?.expand()?;
@@ -210,16 +250,25 @@ impl Equations {
     }
 
     fn is_constant(&self, expression: &Expr) -> bool {
-        expression.symbols().into_iter().all(|name| self.is_parameter(name))
+        expression
+            .symbols()
+            .into_iter()
+            .all(|name| self.is_parameter(name))
     }
 
     /// The product of powers of parameters that all terms have in common.
     pub(super) fn common(&self, terms: &[&Expr]) -> Result<Expr, ExprError> {
-        let powers: Vec<BTreeMap<Symbol, Rational>> = terms.iter().map(|term| self.powers(term)).collect();
-        let names: BTreeSet<Symbol> = powers.iter().flat_map(|powers| powers.keys().copied()).collect();
+        let powers: Vec<BTreeMap<Symbol, Rational>> =
+            terms.iter().map(|term| self.powers(term)).collect();
+        let names: BTreeSet<Symbol> = powers
+            .iter()
+            .flat_map(|powers| powers.keys().copied())
+            .collect();
         let mut factors = Vec::new();
         for name in names {
-            let of = |powers: &BTreeMap<Symbol, Rational>| powers.get(&name).cloned().unwrap_or_else(Rational::zero);
+            let of = |powers: &BTreeMap<Symbol, Rational>| {
+                powers.get(&name).cloned().unwrap_or_else(Rational::zero)
+            };
             let least = powers.iter().map(of).min().unwrap_or_else(Rational::zero);
             let most = powers.iter().map(of).max().unwrap_or_else(Rational::zero);
             // A power that all have, or that all have in the denominator.

@@ -1,10 +1,12 @@
-//! Matrices of expressions: elimination with the first pivot that is not zero, which of a positive mass matrix is always the next.
+//! Matrices of expressions: elimination with the first pivot that is not zero, which of a positive
+//! mass matrix is always the next.
 
 use super::MechanicsError;
 use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
 
-/// x of `matrix x = right`, each entry a quotient in which common parts are shared: O(n^3) of them, none written out.
+/// x of `matrix x = right`, each entry a quotient in which common parts are shared: O(n^3) of them,
+/// none written out.
 ///
 /// # Errors
 /// A pivot that vanishes: the caller's error.
@@ -18,7 +20,8 @@ pub fn solution(
     let mut right = right.to_vec();
     for pivot in 0..size {
         let is_zero = |entry: &Expr| {
-            !is_surely_not_zero(entry) && super::trigonometry::simplified(entry).is_ok_and(|entry| entry.is_zero())
+            !is_surely_not_zero(entry)
+                && super::trigonometry::simplified(entry).is_ok_and(|entry| entry.is_zero())
         };
         let Some(first) = (pivot..size).find(|row| !is_zero(&rows[*row][pivot])) else {
             return Err(singular());
@@ -40,16 +43,20 @@ pub fn solution(
     }
     let mut found = vec![Expr::zero(); size];
     for row in (0..size).rev() {
-        let known: Expr = (row + 1..size).map(|column| &rows[row][column] * &found[column]).sum();
-        found[row] = Expr::divide(&(&right[row] - &known), &rows[row][row]).map_err(|_: ExprError| singular())?;
+        let known: Expr = (row + 1..size)
+            .map(|column| &rows[row][column] * &found[column])
+            .sum();
+        found[row] = Expr::divide(&(&right[row] - &known), &rows[row][row])
+            .map_err(|_: ExprError| singular())?;
     }
     Ok(found)
 }
 
-/// Whether the expression has a value other than zero at a point, rounding accounted for. Costs one evaluation; to write out the quotients of
-/// an elimination takes far longer.
+/// Whether the expression has a value other than zero at a point, rounding accounted for. Costs one
+/// evaluation; to write out the quotients of an elimination takes far longer.
 fn is_surely_not_zero(expression: &Expr) -> bool {
-    // The same point on every run: fractional parts of multiples of the golden section, by the letters of the name.
+    // The same point on every run: fractional parts of multiples of the golden section, by the
+    // letters of the name.
     let place = |name: Symbol| {
         let number = name
             .name()

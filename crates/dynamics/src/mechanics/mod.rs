@@ -1,14 +1,16 @@
-//! From energies to equations of motion: Lagrange's equations of the second kind for any number of coordinates.
+//! From energies to equations of motion: Lagrange's equations of the second kind for any number of
+//! coordinates.
 //!
 //! ```text
 //! d/dt dT/dq_i' - dT/dq_i + dV/dq_i + dD/dq_i' = Q_i        T(q, q', t), V(q, t), D(q, q'), Q_i(q, q', t)
 //! M q'' + C q' + K q = 0   near a place of rest;   det(lambda^2 M + lambda C + K) = 0
 //! ```
 //!
-//! (L. Meirovitch, *Fundamentals of Vibrations*, 2001, sections 6.4 and 7.2; J. W. Strutt, Lord Rayleigh, *The Theory of Sound*,
-//! section 81, for D.) In: a [`Mechanism`], energies as expressions with `q'` for the velocity of `q`. Out: its [`Equations`],
-//! the places where it can rest and how it swings there, and, where its parameters have units, a check of every term and the
-//! dimensionless [`Groups`] on which the motion depends.
+//! (L. Meirovitch, *Fundamentals of Vibrations*, 2001, sections 6.4 and 7.2; J. W. Strutt, Lord
+//! Rayleigh, *The Theory of Sound*, section 81, for D.) In: a [`Mechanism`], energies as
+//! expressions with `q'` for the velocity of `q`. Out: its [`Equations`], the places where it can
+//! rest and how it swings there, and, where its parameters have units, a check of every term and
+//! the dimensionless [`Groups`] on which the motion depends.
 //!
 //! ```
 //! # use lindstedt_dynamics as lindstedt;
@@ -86,7 +88,9 @@ pub enum MechanicsError {
     #[error("the coordinate `{0}` is listed twice")]
     Twice(Symbol),
     /// A name that cannot be a coordinate.
-    #[error("`{0}` cannot be a coordinate: take a name of letters and digits that is neither `t` nor `pi`")]
+    #[error(
+        "`{0}` cannot be a coordinate: take a name of letters and digits that is neither `t` nor `pi`"
+    )]
     Name(String),
     /// A velocity or an acceleration where none belongs.
     #[error("the {part} contains `{name}`: {why}")]
@@ -99,10 +103,14 @@ pub enum MechanicsError {
         why: &'static str,
     },
     /// A coordinate that nothing accelerates.
-    #[error("the kinetic energy does not contain `{0}'`: without inertia `{0}` has no equation of motion")]
+    #[error(
+        "the kinetic energy does not contain `{0}'`: without inertia `{0}` has no equation of motion"
+    )]
     NoInertia(Symbol),
     /// The accelerations do not follow.
-    #[error("the kinetic energy `{0}` does not determine every acceleration: its mass matrix is singular")]
+    #[error(
+        "the kinetic energy `{0}` does not determine every acceleration: its mass matrix is singular"
+    )]
     Singular(Expr),
     /// An energy that jumps.
     #[error(
@@ -125,7 +133,11 @@ impl Mechanism {
     ///
     /// # Errors
     /// What cannot be read; [`Mechanism::equations`] judges what can.
-    pub fn parse(coordinates: &[&str], kinetic: &str, potential: &str) -> Result<Self, MechanicsError> {
+    pub fn parse(
+        coordinates: &[&str],
+        kinetic: &str,
+        potential: &str,
+    ) -> Result<Self, MechanicsError> {
         let read = |part: &str, text: &str| {
             parse_expression(text).map_err(|error| MechanicsError::Parse {
                 part: part.to_owned(),
@@ -174,7 +186,11 @@ impl Mechanism {
             kinetic: change(&self.kinetic)?,
             potential: change(&self.potential)?,
             dissipation: change(&self.dissipation)?,
-            forces: self.forces.iter().map(force).collect::<Result<_, ExprError>>()?,
+            forces: self
+                .forces
+                .iter()
+                .map(force)
+                .collect::<Result<_, ExprError>>()?,
         })
     }
 
@@ -185,15 +201,19 @@ impl Mechanism {
             ("potential energy", &self.potential),
             ("dissipation", &self.dissipation),
         ];
-        let energies = energies.into_iter().map(|(name, part)| (name.to_owned(), part));
+        let energies = energies
+            .into_iter()
+            .map(|(name, part)| (name.to_owned(), part));
         let forces = self.forces.iter();
         energies.chain(forces.map(|(on, force)| (format!("force on {on}"), force)))
     }
 
     /// The names that are neither coordinates, their derivatives nor time, in alphabetical order.
     pub fn parameters(&self) -> Vec<Symbol> {
-        let names: std::collections::BTreeSet<Symbol> = self.parts().flat_map(|(_, part)| part.symbols()).collect();
-        let own = |name: &Symbol| self.coordinates.contains(&name.coordinate()) || name.name() == "t";
+        let names: std::collections::BTreeSet<Symbol> =
+            self.parts().flat_map(|(_, part)| part.symbols()).collect();
+        let own =
+            |name: &Symbol| self.coordinates.contains(&name.coordinate()) || name.name() == "t";
         names.into_iter().filter(|name| !own(name)).collect()
     }
 
@@ -204,7 +224,8 @@ impl Mechanism {
             return Err(MechanicsError::CoordinateCount(count));
         }
         for (index, coordinate) in self.coordinates.iter().enumerate() {
-            let readable = parse_expression(coordinate.name()).is_ok_and(|read| read.as_symbol() == Some(*coordinate));
+            let readable = parse_expression(coordinate.name())
+                .is_ok_and(|read| read.as_symbol() == Some(*coordinate));
             if !readable || coordinate.primes() > 0 || coordinate.name() == "t" {
                 return Err(MechanicsError::Name(coordinate.name().to_owned()));
             }
@@ -219,7 +240,9 @@ impl Mechanism {
             for name in expression.symbols() {
                 let why = match name.primes() {
                     0 => continue,
-                    _ if !self.coordinates.contains(&name.coordinate()) => "no coordinate has that name",
+                    _ if !self.coordinates.contains(&name.coordinate()) => {
+                        "no coordinate has that name"
+                    }
                     1 if part == "potential energy" => {
                         "a potential depends on coordinates alone; what depends on velocities belongs to the kinetic energy, the \
                          dissipation or the forces"

@@ -4,10 +4,11 @@
 //! M q'' + C q' + K q = 0,   q = u e^(lambda t)        C = 0, K symmetric: K u = omega^2 M u
 //! ```
 //!
-//! (L. Meirovitch, *Fundamentals of Vibrations*, 2001, sections 7.2 and 7.3.) M, C and K are exact; frequencies and shapes are
-//! numbers, by nalgebra, where every parameter has a value. Contacts, excitation and dry friction are left out: they are not linear.
-//! Excitation is what enters by sines and cosines of the time, in M, C and K alike; where they change with the time in another way,
-//! as those of a pendulum that lengthens do, there are no modes.
+//! (L. Meirovitch, *Fundamentals of Vibrations*, 2001, sections 7.2 and 7.3.) M, C and K are exact;
+//! frequencies and shapes are numbers, by nalgebra, where every parameter has a value. Contacts,
+//! excitation and dry friction are left out: they are not linear. Excitation is what enters by
+//! sines and cosines of the time, in M, C and K alike; where they change with the time in another
+//! way, as those of a pendulum that lengthens do, there are no modes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -30,10 +31,11 @@ pub struct Modes {
     pub damping: Vec<Vec<Expr>>,
     /// K there.
     pub stiffness: Vec<Vec<Expr>>,
-    /// The coordinates that may be anywhere and on whose place the modes depend: they are taken at 0.
+    /// The coordinates that may be anywhere and on whose place the modes depend: they are taken
+    /// at 0.
     pub taken_at_zero: Vec<Symbol>,
-    /// An entry of these matrices that changes with the time other than by sines and cosines: then they keep the time, and there are
-    /// no modes.
+    /// An entry of these matrices that changes with the time other than by sines and cosines: then
+    /// they keep the time, and there are no modes.
     pub changing: Option<Expr>,
     /// The sums of parameters that enter as one: they cancel as one.
     combinations: Vec<Combination>,
@@ -46,7 +48,8 @@ pub struct Mode {
     pub frequency: f64,
     /// Re lambda, per unit of time: positive where it grows.
     pub growth: f64,
-    /// The coordinates in proportion, the largest 1; nothing where damping makes them move out of step.
+    /// The coordinates in proportion, the largest 1; nothing where damping makes them move out of
+    /// step.
     pub shape: Option<Vec<f64>>,
 }
 
@@ -94,11 +97,16 @@ impl Modes {
     /// The names that still need a value.
     pub fn parameters(&self) -> BTreeSet<Symbol> {
         let matrices = [&self.mass, &self.damping, &self.stiffness];
-        let names = matrices.into_iter().flatten().flatten().flat_map(Expr::symbols);
+        let names = matrices
+            .into_iter()
+            .flatten()
+            .flatten()
+            .flat_map(Expr::symbols);
         names.filter(|name| name.name() != "t").collect()
     }
 
-    /// omega^2 of one coordinate, as a formula; `None` for several, and where the equation changes with the time.
+    /// omega^2 of one coordinate, as a formula; `None` for several, and where the equation changes
+    /// with the time.
     ///
     /// # Errors
     /// A mass that vanishes there.
@@ -106,7 +114,8 @@ impl Modes {
         match (self.mass.as_slice(), self.stiffness.as_slice()) {
             _ if self.changing.is_some() => Ok(None),
             ([mass], [stiffness]) => {
-                let [stiffness, mass] = [&stiffness[0], &mass[0]].map(|entry| put_into(entry, &self.combinations));
+                let [stiffness, mass] =
+                    [&stiffness[0], &mass[0]].map(|entry| put_into(entry, &self.combinations));
                 let square = Expr::divide(&stiffness?, &mass?)?.expand()?;
                 written_out(&square, &self.combinations).map(Some)
             }
@@ -132,7 +141,11 @@ impl Modes {
                 false => Err(NoModes::NotFinite),
             }
         };
-        let (mass, damping, stiffness) = (matrix(&self.mass)?, matrix(&self.damping)?, matrix(&self.stiffness)?);
+        let (mass, damping, stiffness) = (
+            matrix(&self.mass)?,
+            matrix(&self.damping)?,
+            matrix(&self.stiffness)?,
+        );
         let factor = Cholesky::new(mass).ok_or(NoModes::Mass)?;
         let symmetric = (&stiffness - stiffness.transpose()).amax() <= 1e-12 * stiffness.amax();
         let mut modes = match damping.amax() == 0.0 && symmetric {
@@ -154,8 +167,8 @@ impl Modes {
     }
 }
 
-/// The derivatives of the equations with every velocity zero, by which they are linear: in the coordinates still, the same for all places
-/// of rest.
+/// The derivatives of the equations with every velocity zero, by which they are linear: in the
+/// coordinates still, the same for all places of rest.
 pub(super) struct Jacobians {
     /// Mass, damping and stiffness.
     matrices: [Vec<Vec<Expr>>; 3],
@@ -175,13 +188,19 @@ impl Jacobians {
             let written_out = rest.expand()?;
             let has = |term: &Expr, function: Function| term.contains_function(function);
             let smooth = written_out.terms().iter();
-            let smooth = smooth.filter(|term| !has(term, Function::Step) && !has(term, Function::Sign));
+            let smooth =
+                smooth.filter(|term| !has(term, Function::Step) && !has(term, Function::Sign));
             let force: Expr = smooth.cloned().sum();
             let slope = |name: Symbol| force.differentiate(name)?.substitute_all(&still);
             damping.push(velocities().map(slope).collect::<Result<_, ExprError>>()?);
             let force = force.substitute_all(&still)?;
             let slope = |name: &Symbol| force.differentiate(*name);
-            stiffness.push(coordinates.iter().map(slope).collect::<Result<_, ExprError>>()?);
+            stiffness.push(
+                coordinates
+                    .iter()
+                    .map(slope)
+                    .collect::<Result<_, ExprError>>()?,
+            );
         }
         Ok(Self {
             matrices: [equations.mass.clone(), damping, stiffness],
@@ -192,7 +211,11 @@ impl Jacobians {
     ///
     /// # Errors
     /// Entries too long to be written out, or without a value there.
-    pub(super) fn modes_at(&self, equations: &Equations, rest: &Rest) -> Result<Modes, MechanicsError> {
+    pub(super) fn modes_at(
+        &self,
+        equations: &Equations,
+        rest: &Rest,
+    ) -> Result<Modes, MechanicsError> {
         let coordinates = &equations.coordinates;
         let mut place = rest.values(coordinates);
         let anywhere: Vec<Symbol> = coordinates
@@ -203,14 +226,25 @@ impl Jacobians {
         for name in &anywhere {
             place.remove(name);
         }
-        let here = |expression: &Expr, place: &BTreeMap<Symbol, Expr>| simplified(&expression.substitute_all(place)?);
+        let here = |expression: &Expr, place: &BTreeMap<Symbol, Expr>| {
+            simplified(&expression.substitute_all(place)?)
+        };
         let mut matrices = self.matrices.clone();
         for entry in matrices.iter_mut().flatten().flatten() {
             *entry = here(entry, &place)?;
         }
-        let depends = |name: &Symbol| matrices.iter().flatten().flatten().any(|entry| entry.contains(*name));
+        let depends = |name: &Symbol| {
+            matrices
+                .iter()
+                .flatten()
+                .flatten()
+                .any(|entry| entry.contains(*name))
+        };
         let taken_at_zero: Vec<Symbol> = anywhere.into_iter().filter(depends).collect();
-        let zero: BTreeMap<Symbol, Expr> = taken_at_zero.iter().map(|name| (*name, Expr::zero())).collect();
+        let zero: BTreeMap<Symbol, Expr> = taken_at_zero
+            .iter()
+            .map(|name| (*name, Expr::zero()))
+            .collect();
         let changing = changing(matrices.iter().flatten().flatten())?;
         for entry in matrices.iter_mut().flatten().flatten() {
             *entry = here(entry, &zero)?;
@@ -230,13 +264,16 @@ impl Jacobians {
     }
 }
 
-/// The first term of these entries that changes with the time other than by sines and cosines of it.
+/// The first term of these entries that changes with the time other than by sines and cosines of
+/// it.
 fn changing<'a>(entries: impl Iterator<Item = &'a Expr>) -> Result<Option<Expr>, ExprError> {
     let time = Symbol::new("t");
     let is_wave = |part: &Expr| match part.node() {
-        Node::Function(Function::Sin | Function::Cos, argument) => argument
-            .iter()
-            .all(|phase| phase.differentiate(time).is_ok_and(|rate| !rate.contains(time))),
+        Node::Function(Function::Sin | Function::Cos, argument) => argument.iter().all(|phase| {
+            phase
+                .differentiate(time)
+                .is_ok_and(|rate| !rate.contains(time))
+        }),
         _ => false,
     };
     // Products of waves and of their powers are sums of waves; roots and quotients are not.
@@ -299,14 +336,24 @@ fn undamped(mass: &Cholesky<f64, nalgebra::Dyn>, stiffness: &DMatrix<f64>) -> Ve
 
 /// A proportion without the noise of rounding.
 fn tidy(proportion: f64) -> f64 {
-    if proportion.abs() < ROUNDING { 0.0 } else { proportion }
+    if proportion.abs() < ROUNDING {
+        0.0
+    } else {
+        proportion
+    }
 }
 
 /// lambda of the equations of first order, a pair of conjugates once.
-fn damped(mass: &Cholesky<f64, nalgebra::Dyn>, damping: &DMatrix<f64>, stiffness: &DMatrix<f64>) -> Vec<Mode> {
+fn damped(
+    mass: &Cholesky<f64, nalgebra::Dyn>,
+    damping: &DMatrix<f64>,
+    stiffness: &DMatrix<f64>,
+) -> Vec<Mode> {
     let size = stiffness.nrows();
     let mut first_order = DMatrix::zeros(2 * size, 2 * size);
-    first_order.view_mut((0, size), (size, size)).fill_with_identity();
+    first_order
+        .view_mut((0, size), (size, size))
+        .fill_with_identity();
     first_order
         .view_mut((size, 0), (size, size))
         .copy_from(&-mass.solve(stiffness));
@@ -315,10 +362,13 @@ fn damped(mass: &Cholesky<f64, nalgebra::Dyn>, damping: &DMatrix<f64>, stiffness
         .copy_from(&-mass.solve(damping));
     let found = first_order.complex_eigenvalues();
     let largest = found.iter().map(|value| value.norm()).fold(0.0, f64::max);
-    // A rigid motion is a double zero of the equations, which rounding splits into two of its root: as many of the smallest as the
-    // stiffness has such motions are zero.
+    // A rigid motion is a double zero of the equations, which rounding splits into two of its root:
+    // as many of the smallest as the stiffness has such motions are zero.
     let stiff = stiffness.clone().singular_values();
-    let rigid = stiff.iter().filter(|value| **value <= ROUNDING * stiff.max()).count();
+    let rigid = stiff
+        .iter()
+        .filter(|value| **value <= ROUNDING * stiff.max())
+        .count();
     let mut sizes: Vec<f64> = found.iter().map(|value| value.norm()).collect();
     sizes.sort_by(f64::total_cmp);
     let split = sizes
@@ -327,7 +377,9 @@ fn damped(mass: &Cholesky<f64, nalgebra::Dyn>, damping: &DMatrix<f64>, stiffness
         .copied()
         .filter(|size| *size <= SPLIT * largest)
         .fold(ROUNDING * largest, f64::max);
-    let kept = found.iter().filter(|value| value.im >= 0.0 || value.norm() <= split);
+    let kept = found
+        .iter()
+        .filter(|value| value.im >= 0.0 || value.norm() <= split);
     let clean = |part: f64, norm: f64| {
         if norm <= split || part.abs() <= ROUNDING * largest {
             0.0

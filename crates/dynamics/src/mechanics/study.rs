@@ -6,8 +6,8 @@ use thiserror::Error;
 
 use super::modes::Jacobians;
 use super::{
-    Dimension, Drive, Equations, Groups, MechanicsError, Mechanism, Mode, Modes, NoGroups, NoModes, Rest, UnitError,
-    equilibria,
+    Dimension, Drive, Equations, Groups, MechanicsError, Mechanism, Mode, Modes, NoGroups, NoModes,
+    Rest, UnitError, equilibria,
 };
 use crate::symbol::Symbol;
 
@@ -16,7 +16,8 @@ use crate::symbol::Symbol;
 pub struct MechanismQuestion {
     /// The mechanism.
     pub mechanism: Mechanism,
-    /// The unit of every coordinate and parameter; without them nothing is checked and there are no groups.
+    /// The unit of every coordinate and parameter; without them nothing is checked and there are no
+    /// groups.
     pub units: Option<BTreeMap<Symbol, Dimension>>,
     /// Numbers for parameters: with all of them the modes have numbers.
     pub values: BTreeMap<Symbol, f64>,
@@ -44,7 +45,8 @@ pub struct RestStudy {
     pub drive: Drive,
     /// The linear equations there.
     pub modes: Modes,
-    /// Their numbers; nothing where not every parameter has a value, or the place does not exist for these values.
+    /// Their numbers; nothing where not every parameter has a value, or the place does not exist
+    /// for these values.
     pub numbers: Option<Result<Vec<Mode>, NoModes>>,
 }
 
@@ -100,7 +102,11 @@ pub fn study(question: MechanismQuestion) -> Result<MechanismStudy, StudyError> 
     let mechanism = &question.mechanism;
     let equations = mechanism.equations()?;
     let parameters = mechanism.parameters();
-    if let Some(unknown) = question.values.keys().find(|name| !parameters.contains(name)) {
+    if let Some(unknown) = question
+        .values
+        .keys()
+        .find(|name| !parameters.contains(name))
+    {
         return Err(StudyError::UnknownValue(*unknown));
     }
     if let Some(units) = &question.units {

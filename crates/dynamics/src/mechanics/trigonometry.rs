@@ -4,7 +4,8 @@
 //! cos u cos v +- sin u sin v = cos(u -+ v)        sin u cos v +- cos u sin v = sin(u +- v)
 //! ```
 //!
-//! with `u = v` in the first giving 1 or `cos(2u)`: only the 1 is taken, for it is what a square of a speed leaves behind.
+//! with `u = v` in the first giving 1 or `cos(2u)`: only the 1 is taken, for it is what a square of
+//! a speed leaves behind.
 
 use std::collections::HashMap;
 
@@ -36,7 +37,9 @@ fn without_inverses(expression: &Expr) -> Result<Expr, ExprError> {
     expression.fold(|expr, children: &[Expr]| {
         let inner = children.first().map(Expr::node);
         match (expr.node(), inner) {
-            (Node::Function(Function::Cos, _), Some(Node::Function(Function::Acos, u))) => Ok(u[0].clone()),
+            (Node::Function(Function::Cos, _), Some(Node::Function(Function::Acos, u))) => {
+                Ok(u[0].clone())
+            }
             (Node::Function(Function::Sin, _), Some(Node::Function(Function::Acos, u))) => {
                 (Expr::one() - u[0].integer_power(2)?).sqrt()
             }
@@ -58,10 +61,13 @@ fn joined(sum: &Expr) -> Result<Option<Expr>, ExprError> {
         for [first, second] in pairs(term) {
             let rest = Expr::divide(term, &(&first.expression() * &second.expression()))?;
             let partner = &rest * &(first.turned()? * second.turned()?);
-            let Some(&place) = places.get(&partner) else { continue };
+            let Some(&place) = places.get(&partner) else {
+                continue;
+            };
             let other = &bare[place].0;
             let opposite = other.is_negative() != number.is_negative();
-            // Of a square and its partner also a part: what is left over is one term less of that degree.
+            // Of a square and its partner also a part: what is left over is one term less of that
+            // degree.
             let whole = other.abs() == number.abs();
             if place == index || !(whole || first.angle == second.angle) {
                 continue;
@@ -74,9 +80,15 @@ fn joined(sum: &Expr) -> Result<Option<Expr>, ExprError> {
                 false => number.clone(),
             };
             let left = terms.iter().enumerate().map(|(at, term)| match at {
-                _ if at == index => Expr::product([Expr::number(number - &share), bare[index].1.clone()]),
+                _ if at == index => {
+                    Expr::product([Expr::number(number - &share), bare[index].1.clone()])
+                }
                 _ if at == place => {
-                    let share = if opposite { -share.clone() } else { share.clone() };
+                    let share = if opposite {
+                        -share.clone()
+                    } else {
+                        share.clone()
+                    };
                     Expr::product([Expr::number(other - share), bare[place].1.clone()])
                 }
                 _ => term.clone(),
@@ -116,7 +128,8 @@ impl Wave {
         Expr::function(function, vec![self.angle.clone()])
     }
 
-    /// `first*second + turned*turned`, or their difference, as one wave; nothing where that is no shorter.
+    /// `first*second + turned*turned`, or their difference, as one wave; nothing where that is no
+    /// shorter.
     fn join(first: &Self, second: &Self, opposite: bool) -> Result<Option<Expr>, ExprError> {
         let (u, v) = (&first.angle, &second.angle);
         match (first.function, second.function, opposite) {
@@ -135,12 +148,13 @@ fn pairs(term: &Expr) -> Vec<[Wave; 2]> {
     let mut waves = Vec::new();
     for factor in factors {
         let (base, exponent) = factor.base_and_exponent();
-        let Node::Function(function @ (Function::Sin | Function::Cos), arguments) = base.node() else {
+        let Node::Function(function @ (Function::Sin | Function::Cos), arguments) = base.node()
+        else {
             continue;
         };
-        let whole = exponent
-            .as_number()
-            .filter(|exponent| exponent.is_integer() && **exponent >= Rational::from_integer(1.into()));
+        let whole = exponent.as_number().filter(|exponent| {
+            exponent.is_integer() && **exponent >= Rational::from_integer(1.into())
+        });
         let (Some(exponent), Some(angle)) = (whole, arguments.first()) else {
             continue;
         };
@@ -179,11 +193,17 @@ mod tests {
             ("p*sin(a)*cos(b) - p*cos(a)*sin(b)", "p*sin(a - b)"),
             ("sin(a)*cos(b) + cos(a)*sin(b)", "sin(a + b)"),
             ("2*sin(x)^2 + 3*cos(x)^2", "2 + cos(x)^2"),
-            ("2*cos(a)*cos(b) + sin(a)*sin(b)", "2*cos(a)*cos(b) + sin(a)*sin(b)"),
+            (
+                "2*cos(a)*cos(b) + sin(a)*sin(b)",
+                "2*cos(a)*cos(b) + sin(a)*sin(b)",
+            ),
             ("cos(x)^2 - sin(x)^2", "cos(x)^2 - sin(x)^2"),
             ("x*(sin(x)^2 + cos(x)^2)^2", "x"),
             ("sin(a)*cos(a)", "sin(a)*cos(a)"),
-            ("cos(acos(u)) + sin(acos(u))^2 + sin(-acos(u))^2", "2 + u - 2*u^2"),
+            (
+                "cos(acos(u)) + sin(acos(u))^2 + sin(-acos(u))^2",
+                "2 + u - 2*u^2",
+            ),
         ] {
             let typed: Expr = typed.parse().unwrap();
             let short: Expr = short.parse().unwrap();

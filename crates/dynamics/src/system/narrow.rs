@@ -1,13 +1,15 @@
-//! What turns faster than the motion: a narrow well in place, a steep function of the velocity, a pulse that moves with the motion.
+//! What turns faster than the motion: a narrow well in place, a steep function of the velocity, a
+//! pulse that moves with the motion.
 //!
 //! ```text
 //! exp(u), tanh(u), 1/u, ...     u(t*) = 0 or u'(t*) = 0:   width  w = D/|u'|, sqrt(2 D/|u''|),   D: the change of u that matters
 //! a step ends at  t* - 2 w, 4 w, 8 w, ...
 //! ```
 //!
-//! An integrator looks at the right sides along its step only; far from a well there is nothing to be seen of it. Its argument u, though,
-//! moves with the states and is as smooth as they are, so that the places where it does something special are known ahead.
-//! `conservative::features` asks the same of a force at rest.
+//! An integrator looks at the right sides along its step only; far from a well there is nothing to
+//! be seen of it. Its argument u, though, moves with the states and is as smooth as they are, so
+//! that the places where it does something special are known ahead. `conservative::features` asks
+//! the same of a force at rest.
 
 use std::collections::BTreeMap;
 
@@ -47,11 +49,13 @@ const TIMES: f64 = 16.0;
 /// Of the largest value of an argument: what it may be off at a place.
 const ROUNDING: f64 = 1e-13;
 
-/// So many widths away a place is nothing in double precision: from there on steps may end farther apart.
+/// So many widths away a place is nothing in double precision: from there on steps may end farther
+/// apart.
 const FAR: f64 = 32.0;
 
-/// The arguments in the right sides that move with the states. Waves are to be seen everywhere, corners and the roots that begin at one of
-/// these guards end a step by themselves, and what depends on the time alone is known beforehand.
+/// The arguments in the right sides that move with the states. Waves are to be seen everywhere,
+/// corners and the roots that begin at one of these guards end a step by themselves, and what
+/// depends on the time alone is known beforehand.
 pub(super) fn arguments(
     right: &[Expr],
     states: &[Symbol],
@@ -60,10 +64,15 @@ pub(super) fn arguments(
 ) -> Vec<Argument> {
     let mut found: Vec<Argument> = Vec::new();
     for node in right.iter().flat_map(Expr::unique_nodes) {
-        let Some(argument) = argument(node) else { continue };
-        let moves = states.iter().any(|state| argument.expression.contains(*state));
+        let Some(argument) = argument(node) else {
+            continue;
+        };
+        let moves = states
+            .iter()
+            .any(|state| argument.expression.contains(*state));
         let begins_at_guard = || {
-            let root = matches!(argument.kind, Kind::Power(_)).then(|| root_of_square(&argument.expression, values));
+            let root = matches!(argument.kind, Kind::Power(_))
+                .then(|| root_of_square(&argument.expression, values));
             let root = root.flatten().map(|root| Guard::new(root, values));
             root.is_some_and(|root| guards.iter().any(|guard| root.ratio_to(guard).is_some()))
         };
@@ -76,7 +85,12 @@ pub(super) fn arguments(
 
 /// `u` of numbers times `u^2`.
 fn root_of_square<'a>(expression: &'a Expr, values: &BTreeMap<Symbol, f64>) -> Option<&'a Expr> {
-    let is_number = |factor: &Expr| factor.symbols().iter().all(|name| values.contains_key(name));
+    let is_number = |factor: &Expr| {
+        factor
+            .symbols()
+            .iter()
+            .all(|name| values.contains_key(name))
+    };
     let (_, factors) = expression.factors();
     let mut others = factors.iter().filter(|factor| !is_number(factor));
     let (only, None) = (others.next()?, others.next()) else {
@@ -92,11 +106,15 @@ fn root_of_square<'a>(expression: &'a Expr, values: &BTreeMap<Symbol, f64>) -> O
 pub(super) fn guards_in(expressions: &[Expr], values: &BTreeMap<Symbol, f64>) -> Vec<Guard> {
     let nodes = expressions.iter().flat_map(Expr::unique_nodes);
     let argument = |node: &Expr| match node.node() {
-        Node::Function(Function::Absolute | Function::Sign | Function::Step, arguments) => arguments.first().cloned(),
-        Node::Function(Function::Maximum | Function::Minimum, arguments) => match arguments.as_slice() {
-            [one, other] => Some(one - other),
-            _ => None,
-        },
+        Node::Function(Function::Absolute | Function::Sign | Function::Step, arguments) => {
+            arguments.first().cloned()
+        }
+        Node::Function(Function::Maximum | Function::Minimum, arguments) => {
+            match arguments.as_slice() {
+                [one, other] => Some(one - other),
+                _ => None,
+            }
+        }
         _ => None,
     };
     nodes
@@ -136,8 +154,8 @@ fn argument(node: &Expr) -> Option<Argument> {
 }
 
 impl Kind {
-    /// The change of the argument that matters where it is so large, give or take so much; nothing where the function is as good as
-    /// constant.
+    /// The change of the argument that matters where it is so large, give or take so much; nothing
+    /// where the function is as good as constant.
     fn change(self, argument: f64, error: f64) -> Option<f64> {
         /// Beyond it an exponential is nothing, whatever it is multiplied by.
         const NOTHING: f64 = 150.0;
@@ -156,8 +174,9 @@ impl Kind {
     }
 }
 
-/// How far a step may go so that it ends beside the next place that is narrow for it; nothing where it may go to its end. `series` is
-/// the argument along the step, by powers of the time since its beginning.
+/// How far a step may go so that it ends beside the next place that is narrow for it; nothing where
+/// it may go to its end. `series` is the argument along the step, by powers of the time since its
+/// beginning.
 pub(super) fn end_of_step(kind: Kind, series: &[f64], length: f64) -> Option<f64> {
     if is_wide(kind, series, length) || !series.iter().all(|value| value.is_finite()) {
         return None;
@@ -197,34 +216,48 @@ pub(super) fn end_of_step(kind: Kind, series: &[f64], length: f64) -> Option<f64
 /// The fractions of a step at which an argument is looked at first.
 pub(super) const COARSE: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
-/// The same in parts of a step, from the values of the argument at [`COARSE`] and, if these differ much, anywhere.
-pub(super) fn end_by_values(kind: Kind, coarse: [f64; 5], value: impl Fn(f64) -> f64) -> Option<f64> {
+/// The same in parts of a step, from the values of the argument at [`COARSE`] and, if these differ
+/// much, anywhere.
+pub(super) fn end_by_values(
+    kind: Kind,
+    coarse: [f64; 5],
+    value: impl Fn(f64) -> f64,
+) -> Option<f64> {
     const CELLS: usize = 32;
     /// Of the largest value: what the search for a turn may leave of it.
     const CLOSELY: f64 = 1e-9;
     /// Turns of an argument beyond which so many cells do not show them.
     const MOST_TURNS: usize = 8;
-    let most = coarse.iter().fold(f64::NEG_INFINITY, |most, value| most.max(*value));
-    let least = coarse.iter().fold(f64::INFINITY, |least, value| least.min(*value));
+    let most = coarse
+        .iter()
+        .fold(f64::NEG_INFINITY, |most, value| most.max(*value));
+    let least = coarse
+        .iter()
+        .fold(f64::INFINITY, |least, value| least.min(*value));
     let wide = match kind {
         Kind::Power(exponent) => {
             let bent = coarse
                 .windows(3)
                 .map(|around| (around[0] - 2.0 * around[1] + around[2]).abs());
             // Four times as wide as need be: sqrt(2 |u|/(e |u''|)), in quarters of the step.
-            least * most > 0.0 && 2.0 * least.abs().min(most.abs()) > exponent * bent.fold(0.0, f64::max)
+            least * most > 0.0
+                && 2.0 * least.abs().min(most.abs()) > exponent * bent.fold(0.0, f64::max)
         }
         _ => most - least < 0.25 * TIMES,
     };
     let cell = 1.0 / CELLS as f64;
     let values: Vec<f64> = match wide {
         true => return None,
-        false => (0..=CELLS).map(|index| value(cell * index as f64)).collect(),
+        false => (0..=CELLS)
+            .map(|index| value(cell * index as f64))
+            .collect(),
     };
     if !values.iter().all(|value| value.is_finite()) {
         return None;
     }
-    let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let largest = values
+        .iter()
+        .fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let mut first: Option<f64> = None;
     let mut turns = 0;
     for index in 1..CELLS {
@@ -238,7 +271,8 @@ pub(super) fn end_by_values(kind: Kind, coarse: [f64; 5], value: impl Fn(f64) ->
         let zeros = [(before, here, -1.0), (here, after, 0.0)]
             .into_iter()
             .skip(usize::from(index > 1));
-        let zeros = zeros.filter(|(one, other, _)| kind.turns_at_zero() && one * other <= 0.0 && one != other);
+        let zeros = zeros
+            .filter(|(one, other, _)| kind.turns_at_zero() && one * other <= 0.0 && one != other);
         let zeros = zeros.map(|(one, other, cell)| cell + one / (one - other));
         for part in turn.into_iter().chain(zeros) {
             let rate = (slope + part * curvature) / cell;
@@ -246,7 +280,11 @@ pub(super) fn end_by_values(kind: Kind, coarse: [f64; 5], value: impl Fn(f64) ->
                 true => turned(cell * (index as f64 + part), cell, &value),
                 false => (cell * (index as f64 + part), 0.0),
             };
-            let width = width(kind, [at, rate, curvature / (cell * cell)], CLOSELY * largest);
+            let width = width(
+                kind,
+                [at, rate, curvature / (cell * cell)],
+                CLOSELY * largest,
+            );
             let end = width.and_then(|width| end_before(place, width, 1.0));
             first = end.map_or(first, |end| Some(first.map_or(end, |first| first.min(end))));
         }
@@ -257,7 +295,8 @@ pub(super) fn end_by_values(kind: Kind, coarse: [f64; 5], value: impl Fn(f64) ->
     }
 }
 
-/// Where an argument turns near a place, and its value there, by parabolas through closer and closer points.
+/// Where an argument turns near a place, and its value there, by parabolas through closer and
+/// closer points.
 fn turned(place: f64, cell: f64, value: &impl Fn(f64) -> f64) -> (f64, f64) {
     const TIMES: usize = 4;
     let (mut place, mut apart) = (place.clamp(0.0, 1.0), cell / 8.0);
@@ -274,15 +313,19 @@ fn turned(place: f64, cell: f64, value: &impl Fn(f64) -> f64) -> (f64, f64) {
     (place, value(place))
 }
 
-/// The time that a place takes, of the argument, give or take an error, its rate and the rate of that; nothing where the function is as
-/// good as constant.
+/// The time that a place takes, of the argument, give or take an error, its rate and the rate of
+/// that; nothing where the function is as good as constant.
 fn width(kind: Kind, [argument, slope, curvature]: [f64; 3], error: f64) -> Option<f64> {
     let change = kind.change(argument, error)?;
-    let width = f64::min(change / slope.abs(), (2.0 * change / curvature.abs()).sqrt());
+    let width = f64::min(
+        change / slope.abs(),
+        (2.0 * change / curvature.abs()).sqrt(),
+    );
     (width > 0.0).then_some(width)
 }
 
-/// Where to end a step of this length before a place so far away; nothing where the place is wide, or so near that it is seen.
+/// Where to end a step of this length before a place so far away; nothing where the place is wide,
+/// or so near that it is seen.
 fn end_before(distance: f64, width: f64, length: f64) -> Option<f64> {
     let width = width.max(1e-13 * length);
     let near = 2.0 * width;
@@ -291,7 +334,11 @@ fn end_before(distance: f64, width: f64, length: f64) -> Option<f64> {
     }
     let mut rung = near;
     loop {
-        let next = if rung < FAR * width { 2.0 * rung } else { 4.0 * rung };
+        let next = if rung < FAR * width {
+            2.0 * rung
+        } else {
+            4.0 * rung
+        };
         if 1.01 * next >= distance {
             return Some(distance - rung);
         }
@@ -321,7 +368,9 @@ fn is_wide(kind: Kind, series: &[f64], length: f64) -> bool {
 
 fn derivative(series: &[f64]) -> Vec<f64> {
     let terms = series.iter().enumerate().skip(1);
-    terms.map(|(order, coefficient)| order as f64 * coefficient).collect()
+    terms
+        .map(|(order, coefficient)| order as f64 * coefficient)
+        .collect()
 }
 
 #[cfg(test)]
@@ -334,7 +383,10 @@ mod tests {
         let expressions = [expression];
         let guards = guards_in(&expressions, &values);
         let found = arguments(&expressions, &["x".into(), "v".into()], &guards, &values);
-        found.iter().map(|argument| argument.expression.to_string()).collect()
+        found
+            .iter()
+            .map(|argument| argument.expression.to_string())
+            .collect()
     }
 
     #[test]

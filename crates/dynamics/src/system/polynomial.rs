@@ -4,10 +4,14 @@ use crate::numeric::ode::root::{Until, bisect};
 
 /// The value at `s`.
 pub(super) fn value(series: &[f64], s: f64) -> f64 {
-    series.iter().rev().fold(0.0, |sum, coefficient| sum * s + coefficient)
+    series
+        .iter()
+        .rev()
+        .fold(0.0, |sum, coefficient| sum * s + coefficient)
 }
 
-/// The values at several places, each as [`value`] has it: several sums at a time wait less on each other than one.
+/// The values at several places, each as [`value`] has it: several sums at a time wait less on each
+/// other than one.
 pub(super) fn values(series: &[f64], places: &[f64], into: &mut Vec<f64>) {
     const LANES: usize = 8;
     for places in places.chunks(LANES) {
@@ -34,7 +38,9 @@ pub(super) fn values(series: &[f64], places: &[f64], into: &mut Vec<f64>) {
 
 /// `h^0, h^1, ...`, as many as there is room for, each with a multiplication.
 pub(super) fn powers(h: f64, into: &mut [f64]) {
-    let Some(first) = into.first_mut() else { return };
+    let Some(first) = into.first_mut() else {
+        return;
+    };
     *first = 1.0;
     // h^2, h^4, h^8, ... and what stands before them.
     let (mut half, mut square) = (1, h);
@@ -46,7 +52,8 @@ pub(super) fn powers(h: f64, into: &mut [f64]) {
     }
 }
 
-/// Bounds of all that is added to the constant, and of the same of its slope beside the first term, times `size`, for |s| <= `size`.
+/// Bounds of all that is added to the constant, and of the same of its slope beside the first term,
+/// times `size`, for |s| <= `size`.
 fn beyond(series: &[f64], size: f64) -> [f64; 2] {
     let (mut change, mut bend) = (0.0, 0.0);
     for (k, coefficient) in series.iter().enumerate().skip(1).rev() {
@@ -58,12 +65,15 @@ fn beyond(series: &[f64], size: f64) -> [f64; 2] {
     [change * size, bend * size * size]
 }
 
-/// The first root after `from`, at most `to`, and whether the polynomial grows there; a root at `from` itself is not counted.
+/// The first root after `from`, at most `to`, and whether the polynomial grows there; a root at
+/// `from` itself is not counted.
 ///
-/// By bounds: where the constant outweighs all that is added there is no root, where the slope keeps its sign there is at most
-/// one, and everything else is halved.
+/// By bounds: where the constant outweighs all that is added there is no root, where the slope
+/// keeps its sign there is at most one, and everything else is halved.
 pub(super) fn first_root(series: &[f64], from: f64, to: f64) -> Option<(f64, bool)> {
-    let [constant, slope, ..] = *series else { return None };
+    let [constant, slope, ..] = *series else {
+        return None;
+    };
     // Most series have none, and the bounds about 0 say so.
     let [change, bend] = beyond(series, to.abs().max(from.abs()));
     if constant.abs() > change || change == 0.0 {
@@ -112,7 +122,8 @@ fn apart(from: f64, to: f64) -> f64 {
     1e-14 * (to.abs() + from.abs())
 }
 
-/// The sign with which the search for roots begins on a step of this length; 0 for nothing but zeros.
+/// The sign with which the search for roots begins on a step of this length; 0 for nothing but
+/// zeros.
 pub(super) fn sign_at_start(series: &[f64], length: f64) -> f64 {
     let here = value(series, apart(0.0, length));
     let leading = series.iter().find(|value| **value != 0.0);
@@ -163,8 +174,13 @@ mod tests {
             found.push((place, rising));
             from = place;
         }
-        for ((place, rising), expected) in found.iter().zip([(0.1, true), (0.2, false), (0.9, true)]) {
-            assert!((place - expected.0).abs() < 1e-14 && *rising == expected.1, "{found:?}");
+        for ((place, rising), expected) in
+            found.iter().zip([(0.1, true), (0.2, false), (0.9, true)])
+        {
+            assert!(
+                (place - expected.0).abs() < 1e-14 && *rising == expected.1,
+                "{found:?}"
+            );
         }
         assert_eq!(found.len(), 3);
         assert_eq!(first_root(&[0.25, -1.0, 1.0], 0.0, 1.0), None);

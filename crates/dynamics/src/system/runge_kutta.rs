@@ -1,30 +1,36 @@
-//! The same equations by Runge-Kutta: the right sides are evaluated, never expanded, so that it is a check of the series.
+//! The same equations by Runge-Kutta: the right sides are evaluated, never expanded, so that it is
+//! a check of the series.
 //!
 //! ```text
 //! abs(u) -> s u,   sgn(u) -> sgn(s),   H(u) -> H(s),   max(u, w) -> H(s) u + H(-s) w      s = 1 or -1: the side of a corner
 //! ```
 //!
-//! A side is a value of the run beside the states, with rate zero: the right sides are smooth in every step, and where `s u` falls
-//! through zero the run starts anew with the other side. What rounding has left of u there is kept beside it and taken off, so that
-//! the motion stands on its corner and is seen to leave it on either side. States are counted in their own sizes and
-//! time from the start in the length of the first step, so that one tolerance and one guess of a step suit all.
+//! A side is a value of the run beside the states, with rate zero: the right sides are smooth in
+//! every step, and where `s u` falls through zero the run starts anew with the other side. What
+//! rounding has left of u there is kept beside it and taken off, so that the motion stands on its
+//! corner and is seen to leave it on either side. States are counted in their own sizes and time
+//! from the start in the length of the first step, so that one tolerance and one guess of a step
+//! suit all.
 
 use std::cell::RefCell;
 
 use super::narrow::{Argument, COARSE, Kind, arguments, end_by_values};
 use super::{
-    End, Event, LARGEST, Occurrence, Options, Path, System, SystemError, end_of_range, is_vanishing, taylor,
-    within_range, without_value,
+    End, Event, LARGEST, Occurrence, Options, Path, System, SystemError, end_of_range,
+    is_vanishing, taylor, within_range, without_value,
 };
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError, Function, Node};
-use crate::numeric::ode::{self, Action, Kept, Looks, Point, StopReason, Trajectory, integrate_through};
+use crate::numeric::ode::{
+    self, Action, Kept, Looks, Point, StopReason, Trajectory, integrate_through,
+};
 use crate::series::guard::{Guard, Guards};
 use crate::symbol::{Symbol, fresh_stem};
 
 /// No step can be held to less: an estimate of its error is rounding below that.
 const SMALLEST_TOLERANCE: f64 = 1e-14;
 
-/// The part of a state that a rate moves it by, at least, in the time of the run, where the rate is measured by its own size.
+/// The part of a state that a rate moves it by, at least, in the time of the run, where the rate is
+/// measured by its own size.
 const SMALLEST_MOVE: f64 = 1e-10;
 
 /// Crossings in the same direction that lie closer together, in first steps, are one.
@@ -52,7 +58,11 @@ impl Motion {
     /// The states of a point of the run.
     fn states<'a>(&'a self, point: &'a Point<Vec<f64>>) -> impl Iterator<Item = f64> + 'a {
         // Sides and what goes with them stand behind the states.
-        point.y.iter().zip(&self.units.sizes).map(|(value, size)| value * size)
+        point
+            .y
+            .iter()
+            .zip(&self.units.sizes)
+            .map(|(value, size)| value * size)
     }
 
     /// The last step.
@@ -62,7 +72,8 @@ impl Motion {
         [starts.filter(|time| *time < end).last().unwrap_or(end), end]
     }
 
-    /// The time up to which all states are within the range of numbers, where they leave it, and why it ends there.
+    /// The time up to which all states are within the range of numbers, where they leave it, and
+    /// why it ends there.
     fn end_of_range(&self) -> Option<(f64, End)> {
         let mut before = self.trajectory.start().t;
         for knot in self.trajectory.knots() {
@@ -73,7 +84,10 @@ impl Motion {
                 };
                 return Some(match is_vanishing([before, knot.t]) {
                     true => (before, End::Singular),
-                    false => (before + end_of_range(knot.t - before, is_within)?, End::Overflow),
+                    false => (
+                        before + end_of_range(knot.t - before, is_within)?,
+                        End::Overflow,
+                    ),
                 });
             }
             before = knot.t;
@@ -85,8 +99,8 @@ impl Motion {
 /// What states and time are counted in.
 #[derive(Clone, Debug)]
 struct Units {
-    /// The size of every state: what it reaches on the first step of its series. One that stays zero there is taken to be as
-    /// large as the smallest of the others.
+    /// The size of every state: what it reaches on the first step of its series. One that stays
+    /// zero there is taken to be as large as the smallest of the others.
     sizes: Vec<f64>,
     start: f64,
     time: f64,
@@ -95,12 +109,21 @@ struct Units {
 impl Units {
     fn new(system: &System, [start, end]: [f64; 2], values: &[f64], events: &[Event]) -> Self {
         // Without a series there, the values themselves must do.
-        let alone = || (f64::INFINITY, values.iter().map(|value| value.abs()).collect());
+        let alone = || {
+            (
+                f64::INFINITY,
+                values.iter().map(|value| value.abs()).collect(),
+            )
+        };
         let (reach, mut sizes): (f64, Vec<f64>) =
             taylor::first_step(system, [start, end], values, events).unwrap_or_else(alone);
-        // What moves a state by next to nothing in all the time, as the rounding of a touch does, is no size to measure by.
+        // What moves a state by next to nothing in all the time, as the rounding of a touch does,
+        // is no size to measure by.
         for (right, moved) in system.right.iter().zip(sizes.clone()) {
-            let rate = system.state.iter().position(|state| right.as_symbol() == Some(*state));
+            let rate = system
+                .state
+                .iter()
+                .position(|state| right.as_symbol() == Some(*state));
             if let Some(size) = rate.map(|rate| &mut sizes[rate])
                 && *size * (end - start) < SMALLEST_MOVE * moved
             {
@@ -159,13 +182,22 @@ pub(super) fn follow(
     let watched = scaled.watched(events);
     let settings = ode::Options {
         maximum_steps: options.step_limit,
-        // What is looked for may vary faster than the motion: no more than a series of it could tell.
-        maximum_step: if watched.is_empty() { f64::INFINITY } else { 1.0 },
+        // What is looked for may vary faster than the motion: no more than a series of it could
+        // tell.
+        maximum_step: if watched.is_empty() {
+            f64::INFINITY
+        } else {
+            1.0
+        },
         interrupt: options.interrupt,
         ..ode::Options::with_tolerance(options.tolerance.max(SMALLEST_TOLERANCE))
     };
     let rates = |t: f64, y: &Vec<f64>, rates: &mut Vec<f64>| scaled.rates(t, y, rates);
-    let critical: Vec<f64> = system.critical.iter().map(|time| units.count(*time)).collect();
+    let critical: Vec<f64> = system
+        .critical
+        .iter()
+        .map(|time| units.count(*time))
+        .collect();
     let kept = |state: &dyn Fn(f64) -> Point<Vec<f64>>| scaled.short_of_narrow(state);
     let looks = Looks {
         critical: &critical,
@@ -173,14 +205,19 @@ pub(super) fn follow(
     };
     let run = integrate_through(rates, begin, units.count(end), looks, &watched, &settings);
     let trajectory = run.map_err(|error| match error {
-        ode::IntegrationError::RateNotFinite { index, .. } => SystemError::Start(system.state[index]),
+        ode::IntegrationError::RateNotFinite { index, .. } => {
+            SystemError::Start(system.state[index])
+        }
         _ => SystemError::Bounds,
     })?;
     drop(watched);
     let mut occurrences = occurrences(trajectory.occurrences(), &units, events.len());
     let motion = Motion { trajectory, units };
     let last = motion.trajectory.end();
-    let (end, reason) = match (motion.end_of_range(), reason(motion.trajectory.stop_reason())) {
+    let (end, reason) = match (
+        motion.end_of_range(),
+        reason(motion.trajectory.stop_reason()),
+    ) {
         (Some((time, reason)), _) => {
             let time = motion.units.time(time);
             occurrences.retain(|occurrence| occurrence.time <= time);
@@ -202,22 +239,31 @@ pub(super) fn follow(
 }
 
 /// Where the events of the user happened, each place once.
-fn occurrences(all: &[ode::Occurrence<Point<Vec<f64>>>], units: &Units, events: usize) -> Vec<Occurrence> {
+fn occurrences(
+    all: &[ode::Occurrence<Point<Vec<f64>>>],
+    units: &Units,
+    events: usize,
+) -> Vec<Occurrence> {
     let mut occurrences: Vec<Occurrence> = Vec::new();
     for found in all.iter().filter(|found| found.event < events) {
         let (event, time, rising) = (found.event, units.time(found.state.t), found.rising);
-        // Where a corner lies at the same place, rounding may show the crossing before and behind it.
+        // Where a corner lies at the same place, rounding may show the crossing before and behind
+        // it.
         let same = |met: &&Occurrence| met.event == event && met.rising == rising;
         let again = occurrences.iter().rev().find(same);
         if again.is_none_or(|met| time - met.time > SAME_PLACE * units.time) {
-            occurrences.push(Occurrence { event, time, rising });
+            occurrences.push(Occurrence {
+                event,
+                time,
+                rising,
+            });
         }
     }
     occurrences
 }
 
-/// The functions of a system in the units of a run: of the states over their sizes, then the sides of the corners, then what is
-/// left over of each corner where it was crossed last.
+/// The functions of a system in the units of a run: of the states over their sizes, then the sides
+/// of the corners, then what is left over of each corner where it was crossed last.
 struct Scaled<'a> {
     states: usize,
     smooth: &'a Smooth,
@@ -231,7 +277,13 @@ impl Scaled<'_> {
         self.smooth.corners.len()
     }
 
-    fn with(&self, t: f64, y: &[f64], functions: &[CompiledFunction], mut out: impl FnMut(usize, f64)) {
+    fn with(
+        &self,
+        t: f64,
+        y: &[f64],
+        functions: &[CompiledFunction],
+        mut out: impl FnMut(usize, f64),
+    ) {
         let mut arguments = self.scratch.borrow_mut();
         let time = self.states + self.corners();
         for (index, argument) in arguments.iter_mut().take(time).enumerate() {
@@ -245,7 +297,9 @@ impl Scaled<'_> {
 
     fn value_of(&self, t: f64, y: &[f64], function: &CompiledFunction) -> f64 {
         let mut value = f64::NAN;
-        self.with(t, y, std::slice::from_ref(function), |_, found| value = found);
+        self.with(t, y, std::slice::from_ref(function), |_, found| {
+            value = found
+        });
         value
     }
 
@@ -256,12 +310,15 @@ impl Scaled<'_> {
         });
     }
 
-    /// The part of a step, a function of its fraction, that ends beside the first place that is narrow for it, where there is one.
+    /// The part of a step, a function of its fraction, that ends beside the first place that is
+    /// narrow for it, where there is one.
     fn short_of_narrow(&self, state: &dyn Fn(f64) -> Point<Vec<f64>>) -> Option<f64> {
         let coarse = COARSE.map(state);
         let ends = self.smooth.narrow.iter().filter_map(|(kind, function)| {
             let value = |point: &Point<Vec<f64>>| self.value_of(point.t, &point.y, function);
-            end_by_values(*kind, coarse.each_ref().map(value), |fraction| value(&state(fraction)))
+            end_by_values(*kind, coarse.each_ref().map(value), |fraction| {
+                value(&state(fraction))
+            })
         });
         ends.fold(None, |first: Option<f64>, end| {
             Some(first.map_or(end, |first| first.min(end)))
@@ -281,8 +338,8 @@ impl Scaled<'_> {
             .collect();
         first.resize(states + corners, 1.0);
         first.resize(states + 2 * corners, 0.0);
-        // The argument of a corner contains the sides of earlier ones alone. One that begins at zero is left on its own side, or
-        // at once.
+        // The argument of a corner contains the sides of earlier ones alone. One that begins at
+        // zero is left on its own side, or at once.
         for (corner, argument) in self.smooth.corners.iter().enumerate() {
             if self.value_of(0.0, &first, argument) < 0.0 {
                 first[states + corner] = -1.0;
@@ -302,8 +359,8 @@ impl Scaled<'_> {
         Ok(first)
     }
 
-    /// Takes the other side of every corner that rounding has put behind this point: it is met at the same time as the one that has just
-    /// been crossed, and no step would find it any more.
+    /// Takes the other side of every corner that rounding has put behind this point: it is met at
+    /// the same time as the one that has just been crossed, and no step would find it any more.
     fn cross_with(&self, point: &mut Point<Vec<f64>>) {
         for (corner, argument) in self.smooth.corners.iter().enumerate() {
             let side = self.states + corner;
@@ -361,7 +418,8 @@ fn reason(stopped: StopReason) -> End {
     }
 }
 
-/// Right sides, events and the arguments of the corners, as functions of states, sides, time and numbers.
+/// Right sides, events and the arguments of the corners, as functions of states, sides, time and
+/// numbers.
 struct Smooth {
     /// The right sides with their corners.
     typed: Vec<CompiledFunction>,
@@ -374,7 +432,10 @@ struct Smooth {
 
 impl Smooth {
     fn new(system: &System, events: &[Event]) -> Result<Self, SystemError> {
-        let events: Vec<Expr> = events.iter().map(|event| event.expression.clone()).collect();
+        let events: Vec<Expr> = events
+            .iter()
+            .map(|event| event.expression.clone())
+            .collect();
         let known = || {
             system
                 .state
@@ -433,7 +494,8 @@ impl Smooth {
     }
 }
 
-/// The corners met so far: the arguments whose signs choose, which may contain the sides of earlier ones.
+/// The corners met so far: the arguments whose signs choose, which may contain the sides of earlier
+/// ones.
 struct Corners {
     stem: String,
     arguments: Vec<Expr>,
@@ -461,15 +523,17 @@ impl Corners {
     /// The same expression with the sides in place of the signs.
     fn smooth(&mut self, expression: &Expr) -> Result<Expr, ExprError> {
         expression.fold(|expr, children: &[Expr]| match (expr.node(), children) {
-            (Node::Function(Function::Absolute, _), [u]) => Ok(Expr::product([self.sign(u), u.clone()])),
+            (Node::Function(Function::Absolute, _), [u]) => {
+                Ok(Expr::product([self.sign(u), u.clone()]))
+            }
             (Node::Function(function @ (Function::Sign | Function::Step), _), [u]) => {
                 Expr::function(*function, vec![self.sign(u)])
             }
             (Node::Function(function @ (Function::Maximum | Function::Minimum), _), [u, w]) => {
                 let minus = |expr: &Expr| Expr::product([Expr::from(-1), expr.clone()]);
                 let side = self.sign(&Expr::sum([u.clone(), minus(w)]));
-                let [above, below] =
-                    [side.clone(), minus(&side)].map(|side| Expr::function(Function::Step, vec![side]));
+                let [above, below] = [side.clone(), minus(&side)]
+                    .map(|side| Expr::function(Function::Step, vec![side]));
                 let (larger, smaller) = match function {
                     Function::Maximum => (u, w),
                     _ => (w, u),

@@ -1,7 +1,9 @@
-//! The states by their Taylor series: coefficients, how far they reach, and the corners and events on the way.
+//! The states by their Taylor series: coefficients, how far they reach, and the corners and events
+//! on the way.
 //!
-//! References: A. Jorba, M. Zou, *Experimental Mathematics* 14 (2005) 99 (order and step from the series); R. E. Moore, *Methods
-//! and Applications of Interval Analysis*, SIAM 1979, section 3.4 (coefficients by recurrences along the expression).
+//! References: A. Jorba, M. Zou, *Experimental Mathematics* 14 (2005) 99 (order and step from the
+//! series); R. E. Moore, *Methods and Applications of Interval Analysis*, SIAM 1979, section 3.4
+//! (coefficients by recurrences along the expression).
 //!
 //! ```text
 //! y(t + s) = sum_n y_n s^n,   (n + 1) y_(n+1) = F_n      F_n: coefficient of s^n along the expression, each part once
@@ -16,8 +18,8 @@ use std::collections::BTreeMap;
 use super::narrow::{Kind, end_of_step};
 use super::polynomial::{first_root, powers, sign_at_start, value, values};
 use super::{
-    End, Event, Motion, Occurrence, Options, Path, System, SystemError, end_of_range, is_vanishing, within_range,
-    without_value,
+    End, Event, Motion, Occurrence, Options, Path, System, SystemError, end_of_range, is_vanishing,
+    within_range, without_value,
 };
 use crate::series::recurrence::{RecurrenceError, Recurrences};
 use crate::series::tape::Tape;
@@ -38,7 +40,11 @@ pub(super) fn at(steps: &[Step], time: f64) -> Option<Vec<f64>> {
     let after = steps.partition_point(|step| step.start <= time);
     let step = steps.get(after.checked_sub(1)?)?;
     let polynomials = step.coefficients.chunks(step.order + 1);
-    Some(polynomials.map(|series| value(series, time - step.start)).collect())
+    Some(
+        polynomials
+            .map(|series| value(series, time - step.start))
+            .collect(),
+    )
 }
 
 /// One state at such a time.
@@ -53,13 +59,17 @@ pub(super) fn state_at(steps: &[Step], time: f64, state: usize) -> Option<f64> {
 pub(super) fn sample(steps: &[Step], mut times: &[f64], columns: &mut [Vec<f64>]) {
     let mut places = Vec::new();
     let mut following = steps.iter().skip(1).peekable();
-    let Some(mut step) = steps.first() else { return };
+    let Some(mut step) = steps.first() else {
+        return;
+    };
     while let Some(first) = times.first() {
         while let Some(next) = following.next_if(|next| next.start <= *first) {
             step = next;
         }
         let until = following.peek().map(|next| next.start);
-        let count = until.map_or(times.len(), |until| times.partition_point(|time| *time < until));
+        let count = until.map_or(times.len(), |until| {
+            times.partition_point(|time| *time < until)
+        });
         let (own, others) = times.split_at(count);
         places.clear();
         places.extend(own.iter().map(|time| time - step.start));
@@ -79,8 +89,13 @@ pub(super) fn check(system: &System, events: &[Event]) -> Result<(), RecurrenceE
     expansion(system, events, ANY).map(drop)
 }
 
-/// The right sides of a system and these events, to be expanded so far that steps within this tolerance are cheapest.
-pub(super) fn expansion(system: &System, events: &[Event], tolerance: f64) -> Result<Expansion, RecurrenceError> {
+/// The right sides of a system and these events, to be expanded so far that steps within this
+/// tolerance are cheapest.
+pub(super) fn expansion(
+    system: &System,
+    events: &[Event],
+    tolerance: f64,
+) -> Result<Expansion, RecurrenceError> {
     /// An argument need be known to this part of itself only.
     const CLOSELY: f64 = 1e-9;
     let order = order(tolerance);
@@ -88,7 +103,10 @@ pub(super) fn expansion(system: &System, events: &[Event], tolerance: f64) -> Re
     let variables: Vec<(Symbol, Option<usize>)> = states.chain([(system.time, Some(1))]).collect();
     let mut recurrences = Recurrences::new(&variables, &system.numbers, order);
     let narrow = system.narrow.iter().map(|argument| &argument.expression);
-    let outputs = system.right.iter().chain(events.iter().map(|event| &event.expression));
+    let outputs = system
+        .right
+        .iter()
+        .chain(events.iter().map(|event| &event.expression));
     let outputs = outputs
         .chain(narrow)
         .map(|output| recurrences.add(output))
@@ -110,7 +128,8 @@ fn order(tolerance: f64) -> usize {
     (1.0 - 0.5 * tolerance.ln()).ceil() as usize + 1
 }
 
-/// How far the first series reaches, and how large every state becomes on the way, within so much time; `None` where there is none.
+/// How far the first series reaches, and how large every state becomes on the way, within so much
+/// time; `None` where there is none.
 pub(super) fn first_step(
     system: &System,
     [start, end]: [f64; 2],
@@ -125,7 +144,9 @@ pub(super) fn first_step(
     let reach = expansion.step();
     // The series of a free flight has no end, the flight itself has one at the next corner.
     let longest = reach.min(end - start);
-    let corner = expansion.first_corner(longest).filter(|(_, place)| *place > 0.0);
+    let corner = expansion
+        .first_corner(longest)
+        .filter(|(_, place)| *place > 0.0);
     let looked_at = corner.map_or(longest, |(_, place)| place);
     let size = |state: usize| {
         let place = |sample: u32| looked_at * f64::from(sample) / f64::from(SAMPLES);
@@ -176,7 +197,11 @@ pub(super) fn follow(
         });
     }
     Ok(Path {
-        end: if reason == End::Reached { end } else { start + run.time },
+        end: if reason == End::Reached {
+            end
+        } else {
+            start + run.time
+        },
         motion: Motion::Taylor {
             steps: run.steps,
             start,
@@ -236,10 +261,18 @@ impl Run<'_> {
             return Ok(Some(End::Interrupted));
         }
         let now = self.start + self.time;
-        let defined = defined(&mut self.expansion, self.system, now, &self.values, self.events.len());
+        let defined = defined(
+            &mut self.expansion,
+            self.system,
+            now,
+            &self.values,
+            self.events.len(),
+        );
         let last = self.last.take();
         if let Some(last) = last {
-            if self.halvings < MOST_HALVINGS && (defined.is_err() || self.has_missed_something(&last, now)) {
+            if self.halvings < MOST_HALVINGS
+                && (defined.is_err() || self.has_missed_something(&last, now))
+            {
                 self.take_back(last);
                 return Ok(None);
             }
@@ -259,7 +292,8 @@ impl Run<'_> {
             return Ok(Some(End::Singular));
         }
         let met = self.met.take();
-        if met.is_some_and(|(corner, speed)| self.expansion.stays_on(corner, speed * reach, reach)) {
+        if met.is_some_and(|(corner, speed)| self.expansion.stays_on(corner, speed * reach, reach))
+        {
             return Ok(Some(End::Sticks));
         }
         Ok(self.go(reach))
@@ -280,7 +314,8 @@ impl Run<'_> {
         reach * 0.5_f64.powi(self.halvings)
     }
 
-    /// Goes so far, or to the first corner or event that stops; answers why the run ends there, if it does.
+    /// Goes so far, or to the first corner or event that stops; answers why the run ends there, if
+    /// it does.
     fn go(&mut self, reach: f64) -> Option<End> {
         // A corner within the step ends it, and so does an event that stops.
         let mut corner = self.expansion.first_corner(reach);
@@ -341,7 +376,10 @@ impl Run<'_> {
         }
         let (corner, _) = corner?;
         self.halvings = 0;
-        self.met = self.expansion.speed_at(corner, length).map(|speed| (corner, speed));
+        self.met = self
+            .expansion
+            .speed_at(corner, length)
+            .map(|speed| (corner, speed));
         self.expansion.cross(corner);
         // Leaving a corner and being back at once, over and over, is to stay on it.
         const OFTEN: usize = 20;
@@ -350,14 +388,17 @@ impl Run<'_> {
         (self.stuck > OFTEN).then_some(End::Sticks)
     }
 
-    /// Whether the rates where a step has come to are others than its series says: a wall, say, that could not be seen from its
-    /// beginning.
+    /// Whether the rates where a step has come to are others than its series says: a wall, say,
+    /// that could not be seen from its beginning.
     fn has_missed_something(&mut self, last: &Last, now: f64) -> bool {
         /// Of the size of a state on the step: what its rate there may be off, times the step.
         const ASTRAY: f64 = 1e-8;
-        // The terms that are left out are within the tolerance, their slopes within as many times it as the next order says.
+        // The terms that are left out are within the tolerance, their slopes within as many times
+        // it as the next order says.
         let astray = ASTRAY.max((self.expansion.order + 1) as f64 * self.options.tolerance);
-        let Some(step) = self.steps.last() else { return false };
+        let Some(step) = self.steps.last() else {
+            return false;
+        };
         let apart = |(state, series): (usize, &[f64])| {
             let rate = self.expansion.rate(state);
             let (mut power, mut size, mut change) = (1.0, series[0].abs(), 0.0);
@@ -374,17 +415,22 @@ impl Run<'_> {
         !missed.is_empty() && !self.is_rounding(&missed, now)
     }
 
-    /// Whether these rates, each by the number of its state, are off by no more than the last digits of the states make: two bodies that
-    /// touch to rounding push each other by what their places are rounded by, which on a step from rest is all that there is.
+    /// Whether these rates, each by the number of its state, are off by no more than the last
+    /// digits of the states make: two bodies that touch to rounding push each other by what their
+    /// places are rounded by, which on a step from rest is all that there is.
     fn is_rounding(&mut self, missed: &[(usize, f64)], now: f64) -> bool {
         /// Last digits that the sums in a rate lose.
         const DIGITS: f64 = 4.0;
-        let here: Vec<f64> = missed.iter().map(|(state, _)| self.expansion.rate(*state)).collect();
+        let here: Vec<f64> = missed
+            .iter()
+            .map(|(state, _)| self.expansion.rate(*state))
+            .collect();
         let mut by_rounding = vec![0.0; missed.len()];
         let mut values = self.values.clone();
         for state in 0..values.len() {
             values[state] += DIGITS * f64::EPSILON * self.values[state].abs();
-            let expanded = values[state] != self.values[state] && self.expansion.expand_once(now, &values).is_ok();
+            let expanded = values[state] != self.values[state]
+                && self.expansion.expand_once(now, &values).is_ok();
             if expanded {
                 for ((sum, here), (missed, _)) in by_rounding.iter_mut().zip(&here).zip(missed) {
                     *sum += (self.expansion.rate(*missed) - here).abs();
@@ -394,7 +440,11 @@ impl Run<'_> {
         }
         // It was expanded here before, and is again.
         let again = self.expansion.expand_once(now, &self.values).is_ok();
-        again && missed.iter().zip(by_rounding).all(|((_, apart), sum)| *apart <= sum)
+        again
+            && missed
+                .iter()
+                .zip(by_rounding)
+                .all(|((_, apart), sum)| *apart <= sum)
     }
 
     /// Back to where the last step began, from where half of it is to be gone.
@@ -416,7 +466,9 @@ impl Run<'_> {
 /// The next of these times, farther away than rounding.
 fn next_critical(critical: &[f64], now: f64) -> Option<f64> {
     let beyond = now + 4.0 * f64::EPSILON * now.abs();
-    critical.get(critical.partition_point(|time| *time <= beyond)).copied()
+    critical
+        .get(critical.partition_point(|time| *time <= beyond))
+        .copied()
 }
 
 /// Expands everything about a point.
@@ -432,7 +484,12 @@ fn defined(
 ) -> Result<(), SystemError> {
     let expanded = expansion.expand(time, values);
     expanded.map_err(|state| SystemError::Start(system.state[state]))?;
-    let undefined = |event: &usize| !expansion.event(*event).iter().all(|value| value.is_finite());
+    let undefined = |event: &usize| {
+        !expansion
+            .event(*event)
+            .iter()
+            .all(|value| value.is_finite())
+    };
     match (0..events).find(undefined) {
         Some(event) => Err(SystemError::Event(event)),
         None => Ok(()),
@@ -457,7 +514,8 @@ pub(super) struct Expansion {
 }
 
 impl Expansion {
-    /// This expansion takes other numbers for the letters; it has none where other numbers make other recurrences.
+    /// This expansion takes other numbers for the letters; it has none where other numbers make
+    /// other recurrences.
     pub(super) fn with_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<Self> {
         let mut other = self.clone();
         other.tape.set_numbers(numbers).then_some(other)
@@ -478,7 +536,8 @@ impl Expansion {
     /// The coefficients of everything about a point.
     ///
     /// # Errors
-    /// The first state whose series has no finite value, or the first of all where a corner has none.
+    /// The first state whose series has no finite value, or the first of all where a corner has
+    /// none.
     pub(super) fn expand(&mut self, time: f64, values: &[f64]) -> Result<(), usize> {
         for _ in 0..=self.tape.corners().count() {
             let result = self.expand_once(time, values);
@@ -516,7 +575,8 @@ impl Expansion {
         if let Some(state) = (0..size).find(|&state| !is_defined(self.state(state))) {
             return Err(state);
         }
-        // A corner with a value and no series, as that of a root that begins here, would not be seen to change its side.
+        // A corner with a value and no series, as that of a root that begins here, would not be
+        // seen to change its side.
         let mut corners = self.tape.corners();
         match corners.any(|(series, _)| series[0].is_finite() && !is_defined(series)) {
             true => Err(0),
@@ -556,7 +616,8 @@ impl Expansion {
             })
     }
 
-    /// The step, no longer than this, that ends beside the first place that is narrow for it, where there is one.
+    /// The step, no longer than this, that ends beside the first place that is narrow for it, where
+    /// there is one.
     fn short_of_narrow(&self, longest: f64) -> f64 {
         let arguments = self.outputs.iter().skip(self.states + self.events);
         let mut length = longest;
@@ -575,8 +636,9 @@ impl Expansion {
         length
     }
 
-    /// Every crossing of every event on the step, in their order: which, where, and whether it rises there. `signs` are those
-    /// behind the last step: a crossing that rounding has put between two steps is one at the beginning of the second.
+    /// Every crossing of every event on the step, in their order: which, where, and whether it
+    /// rises there. `signs` are those behind the last step: a crossing that rounding has put
+    /// between two steps is one at the beginning of the second.
     fn crossings(&self, signs: &mut [f64], length: f64) -> Vec<(usize, f64, bool)> {
         let mut met = Vec::new();
         // Where no time passes, a sign would be rounding.
@@ -608,11 +670,14 @@ impl Expansion {
         met
     }
 
-    /// The first corner met within a step, and where; at 0 where the motion turns back to the corner that it stands on, or leaves
-    /// it on the other side.
+    /// The first corner met within a step, and where; at 0 where the motion turns back to the
+    /// corner that it stands on, or leaves it on the other side.
     pub(super) fn first_corner(&self, length: f64) -> Option<(usize, f64)> {
         let met = |(index, (series, side)): (usize, (&[f64], f64))| {
-            let (here, slope) = (side * series[0], side * series.get(1).copied().unwrap_or(0.0));
+            let (here, slope) = (
+                side * series[0],
+                side * series.get(1).copied().unwrap_or(0.0),
+            );
             let rounding = 1e-14 * length * slope.abs();
             let leading = series.iter().find(|value| **value != 0.0);
             let leaves = here == 0.0 && leading.is_some_and(|leading| side * leading < 0.0);
@@ -631,7 +696,9 @@ impl Expansion {
         };
         // What a side has no value for is not looked at.
         let corners = self.tape.corners().enumerate();
-        let found = corners.filter(|(_, (series, _))| series[0].is_finite()).filter_map(met);
+        let found = corners
+            .filter(|(_, (series, _))| series[0].is_finite())
+            .filter_map(met);
         found.min_by(|one, other| one.1.total_cmp(&other.1))
     }
 
@@ -639,19 +706,25 @@ impl Expansion {
     fn speed_at(&self, corner: usize, time: f64) -> Option<f64> {
         let (series, _) = self.tape.corners().nth(corner)?;
         let terms = series.iter().enumerate().skip(1).rev();
-        let slope = terms.fold(0.0, |sum, (order, coefficient)| sum * time + order as f64 * coefficient);
+        let slope = terms.fold(0.0, |sum, (order, coefficient)| {
+            sum * time + order as f64 * coefficient
+        });
         Some(slope.abs())
     }
 
-    /// Whether nothing but rounding leads away from a corner within a step, on which its argument has changed by so much before. One that is zero
-    /// altogether is no corner to stay on: the motion goes on.
+    /// Whether nothing but rounding leads away from a corner within a step, on which its argument
+    /// has changed by so much before. One that is zero altogether is no corner to stay on: the
+    /// motion goes on.
     fn stays_on(&self, corner: usize, change: f64, length: f64) -> bool {
         /// Of the change on the other side.
         const ROUNDING: f64 = 1e-12;
         let Some((series, _)) = self.tape.corners().nth(corner) else {
             return false;
         };
-        let reached = series.iter().rev().fold(0.0, |sum, value| sum * length + value.abs());
+        let reached = series
+            .iter()
+            .rev()
+            .fold(0.0, |sum, value| sum * length + value.abs());
         reached > 0.0 && reached <= ROUNDING * change
     }
 
@@ -663,7 +736,12 @@ impl Expansion {
     /// Goes to these sides.
     fn take(&mut self, sides: &[f64]) {
         for (corner, side) in sides.iter().enumerate() {
-            if self.tape.corners().nth(corner).is_some_and(|(_, now)| now != *side) {
+            if self
+                .tape
+                .corners()
+                .nth(corner)
+                .is_some_and(|(_, now)| now != *side)
+            {
                 self.cross(corner);
             }
         }
@@ -702,7 +780,8 @@ impl Allowance {
         order.saturating_sub(LAST - 1).max(order / 2 + 1)
     }
 
-    /// The longest step, no longer than this, on which the last terms of a series of this order are within the tolerance.
+    /// The longest step, no longer than this, on which the last terms of a series of this order are
+    /// within the tolerance.
     fn reach(&self, series: &[f64], longest: f64, powers: &mut Powers) -> f64 {
         const SHORTER: f64 = 0.9;
         const TRIALS: usize = 400;
@@ -716,7 +795,8 @@ impl Allowance {
         for k in Self::first(order).max(lead + 1)..=order {
             let (size, power) = (series[k].abs(), of_longest[k - lead]);
             // A root is drawn only where it may come out shorter.
-            let clearly_longer = power >= f64::MIN_POSITIVE && series[lead].abs() > size * power * (1.0 + 1e-9);
+            let clearly_longer =
+                power >= f64::MIN_POSITIVE && series[lead].abs() > size * power * (1.0 + 1e-9);
             if size != 0.0 && !clearly_longer {
                 h = h.min((series[lead].abs() / size).powf(1.0 / (k - lead) as f64));
             }
@@ -730,7 +810,8 @@ impl Allowance {
         h
     }
 
-    /// Whether the last terms of a series that begins with the order `lead`, at the place with these powers, are within the tolerance.
+    /// Whether the last terms of a series that begins with the order `lead`, at the place with
+    /// these powers, are within the tolerance.
     fn is_within(&self, series: &[f64], lead: usize, powers: &[f64]) -> bool {
         let term = |k: usize| series[k].abs() * powers[k];
         let mut size = 0.0_f64;
@@ -748,7 +829,8 @@ impl Allowance {
     }
 }
 
-/// The powers of one number after the other: most of the series of a step are looked at in the same place.
+/// The powers of one number after the other: most of the series of a step are looked at in the same
+/// place.
 struct Powers {
     of: f64,
     table: Vec<f64>,

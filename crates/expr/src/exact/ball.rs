@@ -1,11 +1,13 @@
 //! Balls: numbers known up to a radius, in fixed point.
 //!
-//! A ball is all real numbers within `radius` of `middle * 2^-bits`. In: fractions, and other balls. Out: balls that contain the
-//! sum, product, quotient or root of any numbers of those that came in; a product costs one of integers of `bits` digits and
-//! some operations on doubles. Rounding goes into the radius, so that what is proved of a ball is true of the number.
+//! A ball is all real numbers within `radius` of `middle * 2^-bits`. In: fractions, and other
+//! balls. Out: balls that contain the sum, product, quotient or root of any numbers of those that
+//! came in; a product costs one of integers of `bits` digits and some operations on doubles.
+//! Rounding goes into the radius, so that what is proved of a ball is true of the number.
 //!
-//! Source: F. Johansson, Arb: efficient arbitrary-precision midpoint-radius interval arithmetic, IEEE Transactions on Computers
-//! 66 (2017), 1281-1292; in fixed point here, for the sums of a Fourier series have one scale.
+//! Source: F. Johansson, Arb: efficient arbitrary-precision midpoint-radius interval arithmetic,
+//! IEEE Transactions on Computers 66 (2017), 1281-1292; in fixed point here, for the sums of a
+//! Fourier series have one scale.
 
 use num_integer::Integer as _;
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -14,7 +16,8 @@ use super::bound::Bound;
 use super::integer::Integer;
 use super::rational::Rational;
 
-/// A number known up to a radius. What its middle counts is said by the [`Balls`] that it belongs to.
+/// A number known up to a radius. What its middle counts is said by the [`Balls`] that it belongs
+/// to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ball {
     /// In units of `2^-bits`.
@@ -55,7 +58,9 @@ impl Balls {
     fn size(self, units: &Integer) -> Bound {
         match units.is_zero() {
             true => Bound::ZERO,
-            false => Bound::of_nearest(units.to_f64().map_or(f64::INFINITY, f64::abs)) * self.unit(),
+            false => {
+                Bound::of_nearest(units.to_f64().map_or(f64::INFINITY, f64::abs)) * self.unit()
+            }
         }
     }
 
@@ -97,7 +102,11 @@ impl Balls {
         let (middle, rest) = (value.numer() << self.bits).div_mod_floor(value.denom());
         Ball {
             middle,
-            radius: if rest.is_zero() { Bound::ZERO } else { self.unit() },
+            radius: if rest.is_zero() {
+                Bound::ZERO
+            } else {
+                self.unit()
+            },
         }
     }
 
@@ -123,7 +132,8 @@ impl Balls {
         self.size(&ball.middle) + ball.radius
     }
 
-    /// Every number of the ball is at least so far from zero; not positive where zero may be among them.
+    /// Every number of the ball is at least so far from zero; not positive where zero may be among
+    /// them.
     pub fn distance_from_zero(self, ball: &Ball) -> f64 {
         let size = ball.middle.to_f64().map_or(0.0, f64::abs).next_down() * self.unit().value();
         match ball.radius == Bound::ZERO {
@@ -161,7 +171,10 @@ impl Balls {
     pub fn product(self, left: &Ball, right: &Ball) -> Ball {
         match left.is_zero() || right.is_zero() {
             true => Ball::zero(),
-            false => self.rounded(&(&left.middle * &right.middle), self.radius_of_product(left, right)),
+            false => self.rounded(
+                &(&left.middle * &right.middle),
+                self.radius_of_product(left, right),
+            ),
         }
     }
 
@@ -179,7 +192,11 @@ impl Balls {
         let radius = ball.radius / divisor;
         Ball {
             middle,
-            radius: if rest.is_zero() { radius } else { radius + self.unit() },
+            radius: if rest.is_zero() {
+                radius
+            } else {
+                radius + self.unit()
+            },
         }
     }
 
@@ -205,8 +222,10 @@ impl Balls {
         }
         let places = self.bits.checked_mul(degree as usize - 1)?;
         let middle = (&ball.middle << places).nth_root(degree);
-        // The derivative of the root r is r/(n x), and the root of the whole ball is at most that of its end.
-        let highest = (self.size(&middle) + self.unit()) * (Bound::exactly(1.0) + ball.radius.over(distance));
+        // The derivative of the root r is r/(n x), and the root of the whole ball is at most that
+        // of its end.
+        let highest =
+            (self.size(&middle) + self.unit()) * (Bound::exactly(1.0) + ball.radius.over(distance));
         let slope = highest.over(distance) / degree;
         Some(Ball {
             middle,
@@ -234,7 +253,10 @@ impl Balls {
             sum.radius += self.magnitude(&power);
             sum
         };
-        self.difference(&self.scaled(&arctangent(5), 16), &self.scaled(&arctangent(239), 4))
+        self.difference(
+            &self.scaled(&arctangent(5), 16),
+            &self.scaled(&arctangent(239), 4),
+        )
     }
 }
 
@@ -258,8 +280,19 @@ mod tests {
 
     /// A ball and a number in it, at its ends and in its middle too.
     fn ball_with_number() -> impl Strategy<Value = (Ball, Rational)> {
-        let middle = prop_oneof![Just(0_i64), Just(1 << 40), Just(-(1 << 40)), -50_i64..50, any::<i64>()];
-        let radius = prop_oneof![Just(0.0), Just(2.0_f64.powi(-40)), 0.0..1e-6_f64, 0.0..3.0_f64];
+        let middle = prop_oneof![
+            Just(0_i64),
+            Just(1 << 40),
+            Just(-(1 << 40)),
+            -50_i64..50,
+            any::<i64>()
+        ];
+        let radius = prop_oneof![
+            Just(0.0),
+            Just(2.0_f64.powi(-40)),
+            0.0..1e-6_f64,
+            0.0..3.0_f64
+        ];
         let place = prop_oneof![Just(-1_i64), Just(0), Just(1), -1..=1_i64];
         (middle, radius, place, 1_i64..9).prop_map(|(middle, radius, place, part)| {
             let ball = Ball {
@@ -267,7 +300,8 @@ mod tests {
                 radius: Bound::exactly(radius),
             };
             let radius = from_f64(radius).unwrap_or_else(Rational::zero);
-            let number = BALLS.middle(&ball) + radius * Rational::new(Integer::from(place), Integer::from(part));
+            let number = BALLS.middle(&ball)
+                + radius * Rational::new(Integer::from(place), Integer::from(part));
             (ball, number)
         })
     }
@@ -287,7 +321,8 @@ mod tests {
             prop_assert!(from_f64(BALLS.magnitude(&left).value()).is_some_and(|bound| bound >= x.abs()));
             prop_assert!(from_f64(BALLS.distance_from_zero(&left)).is_some_and(|bound| bound <= x.abs()));
             if let Some(root) = BALLS.root(&left, n) {
-                // The root is between the ends of its ball exactly when the number is between their powers.
+                // The root is between the ends of its ball exactly when the number is between their
+                // powers.
                 let radius = from_f64(root.radius.value()).unwrap_or_else(Rational::zero);
                 let ends = [BALLS.middle(&root) - &radius, BALLS.middle(&root) + radius];
                 let powers = ends.map(|end| if end.is_negative() { Rational::zero() } else { end.pow(n as i32) });
@@ -318,6 +353,9 @@ mod tests {
             &Rational::new(Integer::from(1), Integer::from(3)),
         );
         let root = BALLS.root(&BALLS.integer(8), 3);
-        assert!(root.zip(two).is_some_and(|(root, two)| contains(&root, &two)));
+        assert!(
+            root.zip(two)
+                .is_some_and(|(root, two)| contains(&root, &two))
+        );
     }
 }

@@ -67,7 +67,8 @@ impl BigFloat {
         self.0.repr().significand().is_zero()
     }
 
-    /// The binary exponent: the size is below `2^exponent` and at least half of that; `None` for zero.
+    /// The binary exponent: the size is below `2^exponent` and at least half of that; `None` for
+    /// zero.
     pub fn exponent(&self) -> Option<i64> {
         let repr = self.0.repr();
         (!self.is_zero()).then(|| repr.exponent() as i64 + repr.digits() as i64)

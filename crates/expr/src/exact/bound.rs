@@ -1,8 +1,9 @@
 //! Upper bounds of sizes, as doubles that are rounded up.
 //!
-//! In: sizes, none negative. Out: doubles that are certainly no smaller than their sums, products and quotients. An operation
-//! of IEEE 754 is within half a unit in the last place, so that the next double above what it gives is a bound; what is no
-//! number bounds nothing and becomes infinity, which no comparison with a finite number takes for small.
+//! In: sizes, none negative. Out: doubles that are certainly no smaller than their sums, products
+//! and quotients. An operation of IEEE 754 is within half a unit in the last place, so that the
+//! next double above what it gives is a bound; what is no number bounds nothing and becomes
+//! infinity, which no comparison with a finite number takes for small.
 
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul};

@@ -2,7 +2,9 @@
 
 use std::fmt;
 use std::iter::{Product, Sum};
-use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Rem, RemAssign, Shl, Shr, Sub, SubAssign};
+use std::ops::{
+    Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Rem, RemAssign, Shl, Shr, Sub, SubAssign,
+};
 use std::str::FromStr;
 
 use dashu_int::IBig;
@@ -11,8 +13,8 @@ use num_traits::{Num, One, Pow, Signed, ToPrimitive, Zero};
 
 /// An integer of any length.
 ///
-/// A type of its own about that of `dashu-int`, whose `num_integer::Integer` rounds quotients between -1 and 0 up: fractions
-/// over it would not be in order.
+/// A type of its own about that of `dashu-int`, whose `num_integer::Integer` rounds quotients
+/// between -1 and 0 up: fractions over it would not be in order.
 #[derive(Clone, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Integer(IBig);
 
@@ -51,7 +53,12 @@ impl Integer {
     pub(crate) fn to_words(&self) -> Vec<u64> {
         let (_, magnitude) = self.0.clone().into_parts();
         let bytes = magnitude.to_le_bytes();
-        let word = |bytes: &[u8]| bytes.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte));
+        let word = |bytes: &[u8]| {
+            bytes
+                .iter()
+                .rev()
+                .fold(0, |word, byte| word << 8 | u64::from(*byte))
+        };
         bytes.chunks(8).map(word).collect()
     }
 
@@ -242,7 +249,8 @@ impl Num for Integer {
     fn from_str_radix(text: &str, radix: u32) -> Result<Self, ParseIntegerError> {
         let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
         // Underscores between the digits would do as well.
-        let only_digits = (2..=36).contains(&radix) && digits.chars().all(|digit| digit.is_digit(radix));
+        let only_digits =
+            (2..=36).contains(&radix) && digits.chars().all(|digit| digit.is_digit(radix));
         if digits.is_empty() || !only_digits {
             return Err(ParseIntegerError);
         }
@@ -258,7 +266,11 @@ impl Signed for Integer {
     }
 
     fn abs_sub(&self, other: &Self) -> Self {
-        if self > other { self - other } else { Self::zero() }
+        if self > other {
+            self - other
+        } else {
+            Self::zero()
+        }
     }
 
     fn signum(&self) -> Self {

@@ -1,11 +1,13 @@
 //! Numbers that never round.
 //!
-//! In come whole numbers of any length, fractions and symbols; out go their sums, products and quotients, exact, and their values
-//! as doubles where numbers are wanted. A division that a ring cannot do is an [`Indivisible`], which names the divisor.
+//! In come whole numbers of any length, fractions and symbols; out go their sums, products and
+//! quotients, exact, and their values as doubles where numbers are wanted. A division that a ring
+//! cannot do is an [`Indivisible`], which names the divisor.
 //!
-//! [`Rational`] is the coefficient people see; [`Polynomial`] carries the symbols; [`Ring`] is what a derivation asks of its
-//! coefficients, so that one derivation serves exact numbers, symbols, floating point, and rings that are chosen at run time.
-//! Where rounding cannot be left out, `BigFloat` puts it as far away as is asked for, and a `Ball` is all the numbers that rounding
+//! [`Rational`] is the coefficient people see; [`Polynomial`] carries the symbols; [`Ring`] is what
+//! a derivation asks of its coefficients, so that one derivation serves exact numbers, symbols,
+//! floating point, and rings that are chosen at run time. Where rounding cannot be left out,
+//! `BigFloat` puts it as far away as is asked for, and a `Ball` is all the numbers that rounding
 //! leaves possible; their sizes are `Bound`s, rounded up.
 
 pub mod ball;

@@ -1,7 +1,8 @@
 //! Sparse polynomials in named symbols, with exponents of either sign.
 //!
-//! A frequency law such as `omega0 + 3*eps*A^2/(8*omega0)` is one of these: terms in a fixed order, no zero among them, so
-//! that equal polynomials are equal values. Products cost (number of terms)^2 coefficient products.
+//! A frequency law such as `omega0 + 3*eps*A^2/(8*omega0)` is one of these: terms in a fixed order,
+//! no zero among them, so that equal polynomials are equal values. Products cost (number of
+//! terms)^2 coefficient products.
 
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -98,7 +99,13 @@ impl Monomial {
 
     /// This monomial with `symbol` taken out.
     pub fn without(&self, symbol: Symbol) -> Self {
-        Self(self.0.iter().copied().filter(|factor| factor.0 != symbol).collect())
+        Self(
+            self.0
+                .iter()
+                .copied()
+                .filter(|factor| factor.0 != symbol)
+                .collect(),
+        )
     }
 }
 
@@ -137,8 +144,8 @@ impl PartialOrd for Monomial {
 
 /// A sum of monomials with coefficients `K`; [`Rational`] unless said otherwise.
 ///
-/// The arithmetic is that of the ring [`Polynomials`]. Where the coefficients are [`Number`]s, whose ring needs no naming, it
-/// stands here as well.
+/// The arithmetic is that of the ring [`Polynomials`]. Where the coefficients are [`Number`]s,
+/// whose ring needs no naming, it stands here as well.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polynomial<K = Rational> {
     terms: BTreeMap<Monomial, K>,
@@ -178,7 +185,8 @@ impl<K> Polynomial<K> {
             .collect()
     }
 
-    /// The smallest and largest exponent of `symbol` over all terms; `None` for the zero polynomial.
+    /// The smallest and largest exponent of `symbol` over all terms; `None` for the zero
+    /// polynomial.
     pub fn exponent_range(&self, symbol: Symbol) -> Option<(i32, i32)> {
         let exponents = || self.terms.keys().map(|monomial| monomial.exponent(symbol));
         Some((exponents().min()?, exponents().max()?))
@@ -253,7 +261,8 @@ impl<K: Number> Polynomial<K> {
         ring_of::<K>().product(self, other)
     }
 
-    /// `unit` and `integer` with `self * unit = integer`, where this is a single term that has them: see [`Ring::inverse`].
+    /// `unit` and `integer` with `self * unit = integer`, where this is a single term that has
+    /// them: see [`Ring::inverse`].
     pub fn inverse(&self) -> Option<(Self, Integer)> {
         ring_of::<K>().inverse(self)
     }
@@ -272,7 +281,10 @@ impl<K: Number> Polynomial<K> {
             if exponent != 0 {
                 let mut coefficient = coefficient.clone();
                 ring.scale(&mut coefficient, exponent.into());
-                result.add_term(monomial.product(&Monomial::power_of(symbol, -1)), coefficient);
+                result.add_term(
+                    monomial.product(&Monomial::power_of(symbol, -1)),
+                    coefficient,
+                );
             }
         }
         result
@@ -287,7 +299,8 @@ impl<K: Number> Polynomial<K> {
         result
     }
 
-    /// `symbol` replaced by `value`, whose negative powers exist only where it is a single invertible term.
+    /// `symbol` replaced by `value`, whose negative powers exist only where it is a single
+    /// invertible term.
     ///
     /// `None` where a negative power would be needed and does not exist.
     pub fn substitute(&self, symbol: Symbol, value: &Self) -> Option<Self> {
@@ -319,7 +332,12 @@ impl<R: Ring> Polynomials<R> {
     }
 
     /// `polynomial += coefficient * monomial`.
-    pub fn add_term(&self, polynomial: &mut Polynomial<R::Element>, monomial: Monomial, coefficient: R::Element) {
+    pub fn add_term(
+        &self,
+        polynomial: &mut Polynomial<R::Element>,
+        monomial: Monomial,
+        coefficient: R::Element,
+    ) {
         if self.0.is_certainly_zero(&coefficient) {
             return;
         }
@@ -337,7 +355,11 @@ impl<R: Ring> Polynomials<R> {
     }
 
     /// The `exponent`-th power; negative powers only of a single term whose coefficient is a unit.
-    pub fn power(&self, base: &Polynomial<R::Element>, exponent: i32) -> Option<Polynomial<R::Element>> {
+    pub fn power(
+        &self,
+        base: &Polynomial<R::Element>,
+        exponent: i32,
+    ) -> Option<Polynomial<R::Element>> {
         let mut square = base.clone();
         if exponent < 0 {
             let (unit, integer) = self.inverse(base)?;
@@ -360,7 +382,8 @@ impl<R: Ring> Polynomials<R> {
 }
 
 impl Polynomial<Rational> {
-    /// The exact square root, where it is a single term: `4*k^2` gives `2*k`. Symbols count as positive.
+    /// The exact square root, where it is a single term: `4*k^2` gives `2*k`. Symbols count as
+    /// positive.
     pub fn single_term_root(&self) -> Option<Self> {
         let (monomial, coefficient) = self.single_term()?;
         let half = super::rational::power(coefficient, &super::rational::ratio(1, 2))?;
@@ -372,7 +395,8 @@ impl Polynomial<Rational> {
         Some(Self::term(Monomial(factors?), half))
     }
 
-    /// The value with every symbol replaced by its number; the first symbol without one is the error.
+    /// The value with every symbol replaced by its number; the first symbol without one is the
+    /// error.
     pub fn evaluate(&self, value_of: impl Fn(Symbol) -> Option<f64>) -> Result<f64, Symbol> {
         self.evaluate_with_size(value_of).map(|(sum, _)| sum)
     }
@@ -381,7 +405,10 @@ impl Polynomial<Rational> {
     ///
     /// # Errors
     /// The first symbol without a number.
-    pub fn evaluate_with_size(&self, value_of: impl Fn(Symbol) -> Option<f64>) -> Result<(f64, f64), Symbol> {
+    pub fn evaluate_with_size(
+        &self,
+        value_of: impl Fn(Symbol) -> Option<f64>,
+    ) -> Result<(f64, f64), Symbol> {
         let (mut sum, mut size, mut in_range) = (0.0, 0.0, true);
         for (monomial, coefficient) in &self.terms {
             let mut product = to_f64(coefficient);
@@ -440,7 +467,9 @@ impl<K: Number> Add for Polynomial<K> {
 /// Zero is the polynomial without terms.
 impl<K: Number> Zero for Polynomial<K> {
     fn zero() -> Self {
-        Self { terms: BTreeMap::new() }
+        Self {
+            terms: BTreeMap::new(),
+        }
     }
 
     fn is_zero(&self) -> bool {
@@ -454,7 +483,9 @@ impl<R: Ring> Ring for Polynomials<R> {
     const FIELD: bool = R::FIELD;
 
     fn zero(&self) -> Self::Element {
-        Polynomial { terms: BTreeMap::new() }
+        Polynomial {
+            terms: BTreeMap::new(),
+        }
     }
     fn integer(&self, value: i64) -> Self::Element {
         self.term(Monomial::one(), self.0.integer(value))
@@ -525,11 +556,19 @@ impl<R: Ring> Ring for Polynomials<R> {
         elements: impl IntoIterator<Item = &'a mut Self::Element>,
         divisor: &Integer,
     ) -> Result<(), Indivisible> {
-        let coefficients = elements.into_iter().flat_map(|element| element.terms.values_mut());
+        let coefficients = elements
+            .into_iter()
+            .flat_map(|element| element.terms.values_mut());
         self.0.divide(coefficients, divisor)
     }
-    fn reduce<'a>(&self, elements: impl IntoIterator<Item = &'a mut Self::Element>, denominator: &mut Integer) {
-        let coefficients = elements.into_iter().flat_map(|element| element.terms.values_mut());
+    fn reduce<'a>(
+        &self,
+        elements: impl IntoIterator<Item = &'a mut Self::Element>,
+        denominator: &mut Integer,
+    ) {
+        let coefficients = elements
+            .into_iter()
+            .flat_map(|element| element.terms.values_mut());
         self.0.reduce(coefficients, denominator);
     }
     fn inverse(&self, element: &Self::Element) -> Option<(Self::Element, Integer)> {
@@ -556,7 +595,11 @@ mod tests {
     fn law() -> Polynomial {
         let mut law = Polynomial::symbol(Symbol::new("omega0"));
         law.add_term(
-            Monomial(vec![("A".into(), 2), ("eps".into(), 1), ("omega0".into(), -1)]),
+            Monomial(vec![
+                ("A".into(), 2),
+                ("eps".into(), 1),
+                ("omega0".into(), -1),
+            ]),
             ratio(3, 8),
         );
         law
@@ -565,7 +608,10 @@ mod tests {
     #[test]
     fn squares_a_frequency_law() {
         let squared = law().product(&law());
-        let terms: Vec<String> = squared.terms().map(|(m, k)| format!("{k} {:?}", m.0)).collect();
+        let terms: Vec<String> = squared
+            .terms()
+            .map(|(m, k)| format!("{k} {:?}", m.0))
+            .collect();
         assert_eq!(
             terms,
             [
@@ -576,12 +622,15 @@ mod tests {
         );
     }
 
-    /// The order against its definition, symbol by symbol, over all small exponents of two symbols out of three.
+    /// The order against its definition, symbol by symbol, over all small exponents of two symbols
+    /// out of three.
     #[test]
     fn monomials_are_ordered_by_degree_and_then_by_their_first_difference() {
         let names = ["a", "b", "c"].map(Symbol::new);
         let mut all = vec![];
-        for exponents in (0..125).map(|code| [code / 25, code / 5 % 5, code % 5].map(|digit| digit - 2)) {
+        for exponents in
+            (0..125).map(|code| [code / 25, code / 5 % 5, code % 5].map(|digit| digit - 2))
+        {
             let powers = names.into_iter().zip(exponents);
             let monomial = powers.fold(Monomial::one(), |product, (name, exponent)| {
                 product.product(&Monomial::power_of(name, exponent))
@@ -590,7 +639,11 @@ mod tests {
         }
         for (left, m) in &all {
             for (right, n) in &all {
-                let first = m.iter().zip(n).map(|(m, n)| n.cmp(m)).find(|order| order.is_ne());
+                let first = m
+                    .iter()
+                    .zip(n)
+                    .map(|(m, n)| n.cmp(m))
+                    .find(|order| order.is_ne());
                 let degree = m.iter().sum::<i32>().cmp(&n.iter().sum::<i32>());
                 assert_eq!(
                     left.cmp(right),
@@ -605,7 +658,9 @@ mod tests {
     fn substitution_inverts_single_terms_only() {
         let omega0 = Symbol::new("omega0");
         let two_k = Polynomial::symbol("k".into()).product(&Polynomial::constant(ratio(2, 1)));
-        let value = law().substitute(omega0, &two_k).expect("2 k has an inverse");
+        let value = law()
+            .substitute(omega0, &two_k)
+            .expect("2 k has an inverse");
         assert_eq!(
             value.evaluate(|s| Some(if s.name() == "k" { 3.0 } else { 2.0 })),
             Ok(6.0 + 0.375 * 8.0 / 6.0)

@@ -16,11 +16,16 @@ pub fn ratio(numerator: i64, denominator: i64) -> Rational {
     Rational::new(numerator.into(), denominator.into())
 }
 
-/// `left right`, where what one has in common with the other is looked for and nothing else: most often one of them is short.
+/// `left right`, where what one has in common with the other is looked for and nothing else: most
+/// often one of them is short.
 ///
-/// Reference: D. E. Knuth, *The Art of Computer Programming*, volume 2, 3rd ed. 1998, section 4.5.1, for this and the sum.
+/// Reference: D. E. Knuth, *The Art of Computer Programming*, volume 2, 3rd ed. 1998,
+/// section 4.5.1, for this and the sum.
 pub(crate) fn product(left: &Rational, right: &Rational) -> Rational {
-    let (left_common, right_common) = (left.numer().gcd(right.denom()), right.numer().gcd(left.denom()));
+    let (left_common, right_common) = (
+        left.numer().gcd(right.denom()),
+        right.numer().gcd(left.denom()),
+    );
     let times = |left: &Integer, left_common: &Integer, right: &Integer, right_common: &Integer| {
         quotient(left, left_common) * quotient(right, right_common)
     };
@@ -30,13 +35,21 @@ pub(crate) fn product(left: &Rational, right: &Rational) -> Rational {
     )
 }
 
-/// `left + right`: what the numerator has in common with the denominator is in what the denominators have in common.
+/// `left + right`: what the numerator has in common with the denominator is in what the
+/// denominators have in common.
 pub(crate) fn sum(left: &Rational, right: &Rational) -> Rational {
     if left.is_zero() || right.is_zero() {
-        return if left.is_zero() { right.clone() } else { left.clone() };
+        return if left.is_zero() {
+            right.clone()
+        } else {
+            left.clone()
+        };
     }
     let common = left.denom().gcd(right.denom());
-    let (own, other) = (quotient(left.denom(), &common), quotient(right.denom(), &common));
+    let (own, other) = (
+        quotient(left.denom(), &common),
+        quotient(right.denom(), &common),
+    );
     let numerator = left.numer() * &other + right.numer() * &own;
     let shared = numerator.gcd(&common);
     let denominator = own * quotient(right.denom(), &shared);
@@ -57,7 +70,9 @@ pub fn to_f64(value: &Rational) -> f64 {
     /// Integers up to this size are doubles, and the quotient of two of them is rounded once.
     const LARGEST_EXACT: u64 = 1 << f64::MANTISSA_DIGITS;
     let exact = |integer: &Integer| {
-        let small = integer.to_i64().filter(|small| small.unsigned_abs() <= LARGEST_EXACT);
+        let small = integer
+            .to_i64()
+            .filter(|small| small.unsigned_abs() <= LARGEST_EXACT);
         small.map(|small| small as f64)
     };
     match (exact(value.numer()), exact(value.denom())) {
@@ -93,8 +108,9 @@ fn nearest(value: &Rational) -> f64 {
     // At most 56 digits, and whether anything is below them.
     let quotient = quotient.to_u64().unwrap_or(u64::MAX) | u64::from(!remainder.is_zero());
     // Rounded to the digits that the double has there, then scaled without a further rounding.
-    let dropped =
-        (i64::from(u64::BITS - quotient.leading_zeros()) - i64::from(f64::MANTISSA_DIGITS)).max(LOWEST - last);
+    let dropped = (i64::from(u64::BITS - quotient.leading_zeros())
+        - i64::from(f64::MANTISSA_DIGITS))
+    .max(LOWEST - last);
     let unit = 1_u64 << dropped;
     let (kept, rest) = (quotient / unit, quotient % unit);
     let up = rest > unit / 2 || (rest == unit / 2 && kept % 2 == 1);
@@ -112,7 +128,11 @@ pub fn from_f64(value: f64) -> Option<Rational> {
     let bits = value.to_bits();
     let (biased, fraction) = ((bits >> 52) & 0x7ff, bits & ((1 << 52) - 1));
     // Subnormal numbers have no leading one, and the exponent of the smallest normal ones.
-    let mantissa = if biased == 0 { fraction } else { fraction | 1 << 52 };
+    let mantissa = if biased == 0 {
+        fraction
+    } else {
+        fraction | 1 << 52
+    };
     let exponent = biased.max(1) as i32 - 1075;
     let mantissa = Integer::from(mantissa);
     let size = match usize::try_from(exponent) {
@@ -122,7 +142,8 @@ pub fn from_f64(value: f64) -> Option<Rational> {
     Some(if value < 0.0 { -size } else { size })
 }
 
-/// The first convergent of the continued fraction of a value that is as near to it as this, which is mostly a short one.
+/// The first convergent of the continued fraction of a value that is as near to it as this, which
+/// is mostly a short one.
 ///
 /// ```
 /// # use lindstedt_expr as lindstedt;
@@ -131,7 +152,10 @@ pub fn from_f64(value: f64) -> Option<Rational> {
 /// assert_eq!(convergent(&ratio(314_159_265, 100_000_000), &ratio(1, 100)), ratio(22, 7));
 /// ```
 pub fn convergent(value: &Rational, tolerance: &Rational) -> Rational {
-    let (mut before, mut last) = ((Integer::zero(), Integer::one()), (Integer::one(), Integer::zero()));
+    let (mut before, mut last) = (
+        (Integer::zero(), Integer::one()),
+        (Integer::one(), Integer::zero()),
+    );
     let mut rest = value.clone();
     loop {
         let whole = rest.floor().to_integer();
@@ -148,8 +172,8 @@ pub fn convergent(value: &Rational, tolerance: &Rational) -> Rational {
 
 /// The exact `p/q`-th power, where one exists among the fractions: `(4/9)^(1/2) = 2/3`.
 ///
-/// With `q` odd the real root of a negative number is taken, as everywhere in this crate. `None` where the result is
-/// irrational, not real, a division by zero, or longer than a million bits.
+/// With `q` odd the real root of a negative number is taken, as everywhere in this crate. `None`
+/// where the result is irrational, not real, a division by zero, or longer than a million bits.
 pub fn power(base: &Rational, exponent: &Rational) -> Option<Rational> {
     const LONGEST: u64 = 1 << 20;
     if base.is_one() {
@@ -184,11 +208,15 @@ fn exact_root(value: &Rational, degree: u32) -> Option<Rational> {
         let candidate = integer.nth_root(degree);
         (candidate.pow(degree) == *integer).then_some(candidate)
     };
-    Some(Rational::new_raw(root(value.numer())?, root(value.denom())?))
+    Some(Rational::new_raw(
+        root(value.numer())?,
+        root(value.denom())?,
+    ))
 }
 
-/// Whether a number leaves the remainder of a power when divided by a prime `p = k degree + 1`: one in `degree` of all others does
-/// (Euler's criterion), and no root of a long number has to be taken to see that it has none.
+/// Whether a number leaves the remainder of a power when divided by a prime `p = k degree + 1`: one
+/// in `degree` of all others does (Euler's criterion), and no root of a long number has to be taken
+/// to see that it has none.
 fn may_be_power(value: &Integer, degree: u32) -> bool {
     const LARGEST: u32 = 64;
     if !(2..=LARGEST).contains(&degree) {
@@ -224,11 +252,19 @@ mod tests {
         for number in numbers.filter(|number| !number.is_zero()) {
             for degree in (2..=70).filter(|degree| !number.is_negative() || degree % 2 == 1) {
                 let raised = Rational::from_integer(number.pow(degree));
-                assert_eq!(exact_root(&raised, degree), Some(number.clone().into()), "{degree}");
+                assert_eq!(
+                    exact_root(&raised, degree),
+                    Some(number.clone().into()),
+                    "{degree}"
+                );
                 let beside = &raised + Rational::one();
                 let expected = (number.pow(degree) == Integer::from(-1)).then(Rational::zero);
                 let expected = expected.or((beside.is_one()).then(Rational::one));
-                assert_eq!(exact_root(&beside, degree), expected, "{number}^{degree} + 1");
+                assert_eq!(
+                    exact_root(&beside, degree),
+                    expected,
+                    "{number}^{degree} + 1"
+                );
             }
         }
     }
@@ -252,7 +288,10 @@ mod tests {
         all.extend([long.recip(), -&long, long]);
         for left in &all {
             for right in &all {
-                for (found, expected) in [(sum(left, right), left + right), (product(left, right), left * right)] {
+                for (found, expected) in [
+                    (sum(left, right), left + right),
+                    (product(left, right), left * right),
+                ] {
                     assert_eq!(
                         (found.numer(), found.denom()),
                         (expected.numer(), expected.denom()),

@@ -1,11 +1,12 @@
 //! Positive roots of polynomials with rational coefficients.
 //!
-//! Reference: D. E. Knuth, *The Art of Computer Programming* 2, 3rd ed., section 4.6.1 (greatest common divisors) and exercise
-//! 4.6.1-22 (Sturm's theorem).
+//! Reference: D. E. Knuth, *The Art of Computer Programming* 2, 3rd ed., section 4.6.1 (greatest
+//! common divisors) and exercise 4.6.1-22 (Sturm's theorem).
 //!
-//! Roots that occur once are told from others by `gcd(p, p')`, fractions are found as quotients of divisors, and what is left
-//! is isolated by Sturm's chain: `V(a) - V(b)` roots lie in `(a, b]`, `V` the number of sign changes of the chain.
-//! A polynomial is the list of its coefficients, lowest first.
+//! Roots that occur once are told from others by `gcd(p, p')`, fractions are found as quotients of
+//! divisors, and what is left is isolated by Sturm's chain: `V(a) - V(b)` roots lie in `(a, b]`,
+//! `V` the number of sign changes of the chain. A polynomial is the list of its coefficients,
+//! lowest first.
 
 use std::cmp::Ordering;
 
@@ -22,7 +23,8 @@ pub struct RealRoot {
     pub value: f64,
     /// The root, where it was found to be a fraction.
     pub exact: Option<Rational>,
-    /// A polynomial without multiple roots that has this root, and no fraction unless the root is one.
+    /// A polynomial without multiple roots that has this root, and no fraction unless the root is
+    /// one.
     pub factor: Vec<Rational>,
     /// Whether the polynomial asked for has it once, so that its slope there is not zero.
     pub simple: bool,
@@ -58,8 +60,9 @@ pub fn positive_roots(polynomial: &[Rational]) -> Vec<RealRoot> {
     roots
 }
 
-/// A polynomial without multiple roots that has the sign of this one wherever neither is zero: the product of its factors of odd
-/// multiplicity. (D. R. Musser, *J. ACM* 22 (1975) 291: the factors of multiplicity 1, 2, ... one after the other.)
+/// A polynomial without multiple roots that has the sign of this one wherever neither is zero: the
+/// product of its factors of odd multiplicity. (D. R. Musser, *J. ACM* 22 (1975) 291: the factors
+/// of multiplicity 1, 2, ... one after the other.)
 pub fn sign_changing_part(polynomial: &[Rational]) -> Vec<Rational> {
     let polynomial = trimmed(polynomial.to_vec());
     let mut shared = gcd(&polynomial, &derivative(&polynomial));
@@ -74,7 +77,10 @@ pub fn sign_changing_part(polynomial: &[Rational]) -> Vec<Rational> {
         let more = gcd(&distinct, &shared);
         if is_odd {
             let factor = quotient(&distinct, &more);
-            let monic: Vec<Rational> = factor.iter().map(|c| c / &factor[factor.len() - 1]).collect();
+            let monic: Vec<Rational> = factor
+                .iter()
+                .map(|c| c / &factor[factor.len() - 1])
+                .collect();
             part = product(&part, &monic);
         }
         shared = quotient(&shared, &more);
@@ -86,10 +92,13 @@ pub fn sign_changing_part(polynomial: &[Rational]) -> Vec<Rational> {
 /// The derivative of a polynomial.
 pub fn derivative(polynomial: &[Rational]) -> Vec<Rational> {
     let powers = polynomial.iter().enumerate().skip(1);
-    powers.map(|(k, c)| c * Rational::from_integer(k.into())).collect()
+    powers
+        .map(|(k, c)| c * Rational::from_integer(k.into()))
+        .collect()
 }
 
-/// The polynomial `u` of lowest degree with `a u = 1` modulo `modulus`; `None` where they have a factor in common.
+/// The polynomial `u` of lowest degree with `a u = 1` modulo `modulus`; `None` where they have a
+/// factor in common.
 pub fn inverse_modulo(a: &[Rational], modulus: &[Rational]) -> Option<Vec<Rational>> {
     let (mut r, mut next_r) = (trimmed(modulus.to_vec()), remainder(a, modulus));
     let (mut u, mut next_u) = (vec![], vec![Rational::one()]);
@@ -101,7 +110,10 @@ pub fn inverse_modulo(a: &[Rational], modulus: &[Rational]) -> Option<Vec<Ration
         (u, next_u) = (next_u, new_u);
     }
     match r.as_slice() {
-        [unit] => Some(remainder(&u.iter().map(|c| c / unit).collect::<Vec<_>>(), modulus)),
+        [unit] => Some(remainder(
+            &u.iter().map(|c| c / unit).collect::<Vec<_>>(),
+            modulus,
+        )),
         _ => None,
     }
 }
@@ -159,7 +171,11 @@ fn product(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
 
 fn difference(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
     let at = |list: &[Rational], k: usize| list.get(k).cloned().unwrap_or_else(Rational::zero);
-    trimmed((0..a.len().max(b.len())).map(|k| at(a, k) - at(b, k)).collect())
+    trimmed(
+        (0..a.len().max(b.len()))
+            .map(|k| at(a, k) - at(b, k))
+            .collect(),
+    )
 }
 
 fn trimmed(mut polynomial: Vec<Rational>) -> Vec<Rational> {
@@ -171,8 +187,15 @@ fn trimmed(mut polynomial: Vec<Rational>) -> Vec<Rational> {
 
 /// Whole numbers without common divisor in the ratio of the coefficients, with their signs.
 fn primitive(polynomial: &[Rational]) -> Vec<Integer> {
-    let common = polynomial.iter().fold(Integer::one(), |lcm, c| lcm.lcm(c.denom()));
-    without_content(polynomial.iter().map(|c| (c * &common).to_integer()).collect())
+    let common = polynomial
+        .iter()
+        .fold(Integer::one(), |lcm, c| lcm.lcm(c.denom()));
+    without_content(
+        polynomial
+            .iter()
+            .map(|c| (c * &common).to_integer())
+            .collect(),
+    )
 }
 
 fn without_content(mut whole: Vec<Integer>) -> Vec<Integer> {
@@ -183,7 +206,8 @@ fn without_content(mut whole: Vec<Integer>) -> Vec<Integer> {
     whole.iter().map(|c| c / &content).collect()
 }
 
-/// The sign of a polynomial at a fraction: of its value times a power of the denominator, so that no fraction is reduced.
+/// The sign of a polynomial at a fraction: of its value times a power of the denominator, so that
+/// no fraction is reduced.
 fn sign_at(whole: &[Integer], x: &Rational) -> Ordering {
     let mut power = Integer::one();
     let mut sum = Integer::zero();
@@ -194,7 +218,8 @@ fn sign_at(whole: &[Integer], x: &Rational) -> Ordering {
     sum.cmp(&Integer::zero())
 }
 
-/// The positive fractions among the roots of a polynomial without multiple roots, as far as divisors are found by trial.
+/// The positive fractions among the roots of a polynomial without multiple roots, as far as
+/// divisors are found by trial.
 fn fractions(polynomial: &[Rational]) -> Vec<Rational> {
     let whole = primitive(polynomial);
     let (Some(lowest), Some(highest)) = (whole.iter().find(|c| !c.is_zero()), whole.last()) else {
@@ -225,7 +250,10 @@ fn fractions(polynomial: &[Rational]) -> Vec<Rational> {
 const PRIME: u64 = (1 << 61) - 1;
 
 fn modulo_prime(number: &Integer) -> u64 {
-    number.mod_floor(&Integer::from(PRIME)).to_u64().unwrap_or(0)
+    number
+        .mod_floor(&Integer::from(PRIME))
+        .to_u64()
+        .unwrap_or(0)
 }
 
 fn times_modulo_prime(a: u64, b: u64) -> u64 {
@@ -250,7 +278,9 @@ fn divisors(number: &Integer) -> Vec<u64> {
     let Some(number) = number.abs().to_u64().filter(|number| *number < 1 << 40) else {
         return vec![1];
     };
-    let small = (1..).take_while(|d| d * d <= number).filter(|d| number % d == 0);
+    let small = (1..)
+        .take_while(|d| d * d <= number)
+        .filter(|d| number % d == 0);
     let mut all: Vec<u64> = small.flat_map(|d| [d, number / d]).collect();
     all.dedup();
     all
@@ -259,7 +289,9 @@ fn divisors(number: &Integer) -> Vec<u64> {
 /// A positive multiple of the remainder of a division, in whole numbers.
 fn pseudo_remainder(dividend: &[Integer], divisor: &[Integer]) -> Vec<Integer> {
     let mut rest = dividend.to_vec();
-    let Some(leading) = divisor.last() else { return rest };
+    let Some(leading) = divisor.last() else {
+        return rest;
+    };
     while rest.len() >= divisor.len() {
         let shift = rest.len() - divisor.len();
         let Some(first) = rest.pop() else { break };
@@ -323,7 +355,8 @@ fn irrational(polynomial: &[Rational]) -> Vec<f64> {
     roots
 }
 
-/// The only root in `(low, high]`, where the polynomial changes its sign, between neighbouring doubles.
+/// The only root in `(low, high]`, where the polynomial changes its sign, between neighbouring
+/// doubles.
 fn only_root(whole: &[Integer], mut low: Rational, mut high: Rational) -> f64 {
     let beyond = sign_at(whole, &high);
     if beyond.is_eq() {
@@ -351,18 +384,22 @@ mod tests {
         coefficients.iter().map(|&c| ratio(c, 1)).collect()
     }
 
-    /// (z - 2)(z - 1/3)(z^2 - 6 z + 4)(z + 1)(z - 5)^2: fractions, quadratic roots 3 -+ sqrt 5, a double root.
+    /// (z - 2)(z - 1/3)(z^2 - 6 z + 4)(z + 1)(z - 5)^2: fractions, quadratic roots 3 -+ sqrt 5, a
+    /// double root.
     #[test]
     fn roots_of_every_kind() {
         let factors: [&[i64]; 6] = [&[-2, 1], &[-1, 3], &[4, -6, 1], &[1, 1], &[-5, 1], &[-5, 1]];
-        let all = factors
-            .iter()
-            .fold(polynomial(&[1]), |all, factor| product(&all, &polynomial(factor)));
+        let all = factors.iter().fold(polynomial(&[1]), |all, factor| {
+            product(&all, &polynomial(factor))
+        });
         let roots = positive_roots(&all);
         let expected = [1.0 / 3.0, 3.0 - 5f64.sqrt(), 2.0, 5.0, 3.0 + 5f64.sqrt()];
         assert_eq!(roots.len(), 5);
         for (root, expected) in roots.iter().zip(expected) {
-            assert!((root.value - expected).abs() < 1e-15 * 8.0, "{root:?} {expected}");
+            assert!(
+                (root.value - expected).abs() < 1e-15 * 8.0,
+                "{root:?} {expected}"
+            );
             assert_eq!(root.simple, expected != 5.0);
         }
         assert_eq!(roots[0].exact, Some(ratio(1, 3)));
@@ -382,9 +419,9 @@ mod tests {
             &[1, 0, 1],
             &[1, 0, 1],
         ];
-        let all = factors
-            .iter()
-            .fold(polynomial(&[-3]), |all, factor| product(&all, &polynomial(factor)));
+        let all = factors.iter().fold(polynomial(&[-3]), |all, factor| {
+            product(&all, &polynomial(factor))
+        });
         let part = sign_changing_part(&all);
         let roots = positive_roots(&part);
         let values: Vec<f64> = roots.iter().map(|root| root.value).collect();
@@ -400,7 +437,11 @@ mod tests {
     #[test]
     fn close_and_distant_roots_are_told_apart() {
         // (z^2 - 2)(z^2 - 2 - 1e-9)(z^2 - 2e20) and one without positive roots.
-        let near: Vec<Rational> = vec![-(ratio(2, 1) + ratio(1, 1_000_000_000)), Zero::zero(), One::one()];
+        let near: Vec<Rational> = vec![
+            -(ratio(2, 1) + ratio(1, 1_000_000_000)),
+            Zero::zero(),
+            One::one(),
+        ];
         let far = vec![
             -ratio(2, 1) * num_traits::pow(ratio(10, 1), 20),
             Zero::zero(),
@@ -410,7 +451,8 @@ mod tests {
         let roots: Vec<f64> = positive_roots(&all).iter().map(|root| root.value).collect();
         assert_eq!(roots.len(), 3);
         assert!(
-            (roots[1] - roots[0] - 1e-9 / 8f64.sqrt()).abs() < 1e-15 && (roots[2] / 2e20f64.sqrt() - 1.0).abs() < 1e-15
+            (roots[1] - roots[0] - 1e-9 / 8f64.sqrt()).abs() < 1e-15
+                && (roots[2] / 2e20f64.sqrt() - 1.0).abs() < 1e-15
         );
         assert!(positive_roots(&polynomial(&[1, 1, 1])).is_empty());
         assert!(positive_roots(&polynomial(&[7])).is_empty());
@@ -418,7 +460,8 @@ mod tests {
 
     #[test]
     fn high_degrees_end_soon() {
-        // 1 - c z^100 with c as van der Pol's first order has it for x^200, and the product of (z - k/7) for k up to 30.
+        // 1 - c z^100 with c as van der Pol's first order has it for x^200, and the product of (z -
+        // k/7) for k up to 30.
         let c = (1..=100).fold(ratio(1, 101), |c, k| c * ratio(100 + k, 4 * k));
         let mut power = vec![Rational::zero(); 101];
         (power[0], power[100]) = (ratio(1, 1), -c.clone());
@@ -441,7 +484,10 @@ mod tests {
         let modulus = polynomial(&[1, -3, 0, 2, 1]);
         let a = polynomial(&[2, 5, -1]);
         let inverse = inverse_modulo(&a, &modulus).unwrap();
-        assert_eq!(remainder(&product(&a, &inverse), &modulus), polynomial(&[1]));
+        assert_eq!(
+            remainder(&product(&a, &inverse), &modulus),
+            polynomial(&[1])
+        );
         assert_eq!(inverse_modulo(&product(&a, &modulus), &modulus), None);
     }
 }

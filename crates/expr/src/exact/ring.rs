@@ -1,8 +1,9 @@
 //! What a derivation asks of its coefficients.
 //!
-//! A series and a perturbation method are written once, over any [`Ring`]. A ring is a value, and its elements know nothing of
-//! it: what the arithmetic needs to know beside them, a prime or a working precision chosen at run time, is a field of the
-//! ring, kept once for a whole series. The exact numbers need nothing of the kind, and their rings are empty structs.
+//! A series and a perturbation method are written once, over any [`Ring`]. A ring is a value, and
+//! its elements know nothing of it: what the arithmetic needs to know beside them, a prime or a
+//! working precision chosen at run time, is a field of the ring, kept once for a whole series. The
+//! exact numbers need nothing of the kind, and their rings are empty structs.
 //!
 //! | ring | its elements | divides by integers |
 //! | --- | --- | --- |
@@ -11,18 +12,20 @@
 //! | [`Doubles`] | `f64` | yes, rounded |
 //! | [`Polynomials`](super::Polynomials) | [`Polynomial`](super::Polynomial) | as its coefficients do |
 //!
-//! Two kinds of ring exist. A [field](Ring::FIELD) divides in place. A ring of *numerators* does not, and the series that holds
-//! its elements keeps one denominator for all of them: products are then products of integers, and one greatest common
-//! divisor per series and order replaces one per addition, which is what makes exact series fast.
+//! Two kinds of ring exist. A [field](Ring::FIELD) divides in place. A ring of *numerators* does
+//! not, and the series that holds its elements keeps one denominator for all of them: products are
+//! then products of integers, and one greatest common divisor per series and order replaces one per
+//! addition, which is what makes exact series fast.
 //!
-//! A field may still be unable to divide by some integers, as residues are by multiples of their prime. Such a divisor stays in
-//! the denominator of the series too, so that no operation on series fails or gives a wrong value;
-//! `FourierSeries::divided` tells of it, and the elimination of secular terms, which asks
-//! after every order, ends with that as its error.
+//! A field may still be unable to divide by some integers, as residues are by multiples of their
+//! prime. Such a divisor stays in the denominator of the series too, so that no operation on series
+//! fails or gives a wrong value; `FourierSeries::divided` tells of it, and the elimination of
+//! secular terms, which asks after every order, ends with that as its error.
 //!
-//! Nothing is left out of a series but what is [certainly zero](Ring::is_certainly_zero). An interval that contains zero stays,
-//! and so does a residue that came out as zero: it may be that of a multiple of the prime, and left out before a division by
-//! the prime it would be lost without a word.
+//! Nothing is left out of a series but what is [certainly zero](Ring::is_certainly_zero). An
+//! interval that contains zero stays, and so does a residue that came out as zero: it may be that
+//! of a multiple of the prime, and left out before a division by the prime it would be lost without
+//! a word.
 
 use std::fmt::Debug;
 
@@ -41,23 +44,26 @@ pub struct Indivisible {
     pub ring: String,
 }
 
-/// A commutative ring with one, seen as the coefficients of a series. The laws of a ring hold as far as its elements are exact.
+/// A commutative ring with one, seen as the coefficients of a series. The laws of a ring hold as
+/// far as its elements are exact.
 pub trait Ring: Clone + Debug + PartialEq {
     /// A coefficient.
     type Element: Clone + Debug + PartialEq + 'static;
 
-    /// Whether [`Ring::divide`] is how elements are divided by integers; otherwise the series keeps a denominator and
-    /// [`Ring::reduce`] finds what it has in common with the elements.
+    /// Whether [`Ring::divide`] is how elements are divided by integers; otherwise the series keeps
+    /// a denominator and [`Ring::reduce`] finds what it has in common with the elements.
     const FIELD: bool;
 
     /// Zero.
     fn zero(&self) -> Self::Element;
     /// The image of an integer.
     fn integer(&self, value: i64) -> Self::Element;
-    /// Whether the number that the element stands for can only be zero, so that it need not be kept. [`Ring::zero`] is so, and
-    /// its products are; an interval that contains other numbers and a residue of some multiple of the prime are not.
+    /// Whether the number that the element stands for can only be zero, so that it need not be
+    /// kept. [`Ring::zero`] is so, and its products are; an interval that contains other numbers
+    /// and a residue of some multiple of the prime are not.
     fn is_certainly_zero(&self, element: &Self::Element) -> bool;
-    /// Whether nothing shows that the number is not zero: the same as [`Ring::is_certainly_zero`] where elements are exact.
+    /// Whether nothing shows that the number is not zero: the same as [`Ring::is_certainly_zero`]
+    /// where elements are exact.
     fn may_be_zero(&self, element: &Self::Element) -> bool {
         self.is_certainly_zero(element)
     }
@@ -78,18 +84,24 @@ pub trait Ring: Clone + Debug + PartialEq {
     /// Divides all of `elements` by `divisor`, which is not zero.
     ///
     /// # Errors
-    /// No inverse of `divisor`, which depends on nothing but `divisor`; all elements are then as they were.
+    /// No inverse of `divisor`, which depends on nothing but `divisor`; all elements are then as
+    /// they were.
     fn divide<'a>(
         &self,
         elements: impl IntoIterator<Item = &'a mut Self::Element>,
         divisor: &Integer,
     ) -> Result<(), Indivisible>;
-    /// Divides `elements` and their `denominator`, which is positive, by what they have in common. A field has nothing to do.
-    fn reduce<'a>(&self, elements: impl IntoIterator<Item = &'a mut Self::Element>, denominator: &mut Integer) {
+    /// Divides `elements` and their `denominator`, which is positive, by what they have in common.
+    /// A field has nothing to do.
+    fn reduce<'a>(
+        &self,
+        elements: impl IntoIterator<Item = &'a mut Self::Element>,
+        denominator: &mut Integer,
+    ) {
         let _ = (elements.into_iter(), denominator);
     }
-    /// `unit` and `integer` with `element * unit = integer`, where the element has such a pair: the step from a linear
-    /// equation `element * x = b` to `x = b * unit / integer`.
+    /// `unit` and `integer` with `element * unit = integer`, where the element has such a pair: the
+    /// step from a linear equation `element * x = b` to `x = b * unit / integer`.
     fn inverse(&self, element: &Self::Element) -> Option<(Self::Element, Integer)>;
 }
 
@@ -107,7 +119,8 @@ pub struct Integers;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rationals;
 
-/// Floating point. It rounds, so the laws of a ring hold to rounding only; series over it are for drawing and checking.
+/// Floating point. It rounds, so the laws of a ring hold to rounding only; series over it are for
+/// drawing and checking.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Doubles;
 
@@ -166,7 +179,11 @@ impl Ring for Integers {
         elements.into_iter().for_each(|element| *element *= divisor);
         Ok(())
     }
-    fn reduce<'a>(&self, elements: impl IntoIterator<Item = &'a mut Integer>, denominator: &mut Integer) {
+    fn reduce<'a>(
+        &self,
+        elements: impl IntoIterator<Item = &'a mut Integer>,
+        denominator: &mut Integer,
+    ) {
         let mut elements: Vec<&mut Integer> = elements.into_iter().collect();
         let mut common = denominator.clone();
         for element in &elements {

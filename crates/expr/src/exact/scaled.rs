@@ -1,4 +1,5 @@
-//! Floating-point numbers with an exponent of their own: products of powers far beyond the range of doubles keep their digits.
+//! Floating-point numbers with an exponent of their own: products of powers far beyond the range of
+//! doubles keep their digits.
 
 use num_traits::ToPrimitive;
 
@@ -123,7 +124,9 @@ mod tests {
 
     #[test]
     fn numbers_beyond_the_range_of_doubles_keep_their_digits() {
-        let huge = Scaled::new(1.7e300).power(40).product(Scaled::new(3.1e-310));
+        let huge = Scaled::new(1.7e300)
+            .power(40)
+            .product(Scaled::new(3.1e-310));
         let expected = 40.0 * 1.7e300_f64.ln() + (3.1_f64.ln() - 310.0 * 10.0_f64.ln());
         assert!((huge.logarithm() / expected - 1.0).abs() < 1e-14);
         assert_eq!(Scaled::new(-0.75).power(3).in_units(0), -0.421875);
@@ -133,8 +136,18 @@ mod tests {
 
     #[test]
     fn fractions_of_any_size_are_rounded_once() {
-        for (p, q) in [(1, 3), (-22, 7), (1, 1), (i64::MAX, 3), (-1, i64::MAX), (0, 1)] {
-            assert_eq!(Scaled::of_fraction(&ratio(p, q)).in_units(0), to_f64(&ratio(p, q)));
+        for (p, q) in [
+            (1, 3),
+            (-22, 7),
+            (1, 1),
+            (i64::MAX, 3),
+            (-1, i64::MAX),
+            (0, 1),
+        ] {
+            assert_eq!(
+                Scaled::of_fraction(&ratio(p, q)).in_units(0),
+                to_f64(&ratio(p, q))
+            );
         }
         let huge = Rational::from_integer(Integer::from(10).pow(900)) / ratio(7, 1);
         let expected = 900.0 * 10.0_f64.ln() - 7.0_f64.ln();

@@ -1,13 +1,15 @@
-//! Zeros of a long real polynomial on the positive axis and closely beside it, each counted for certain.
+//! Zeros of a long real polynomial on the positive axis and closely beside it, each counted for
+//! certain.
 //!
-//! Reference: M. Marden, *Geometry of Polynomials*, 2nd ed., AMS 1966, section 28 (Pellet's theorem).
+//! Reference: M. Marden, *Geometry of Polynomials*, 2nd ed., AMS 1966, section 28 (Pellet's
+//! theorem).
 //!
 //! ```text
 //! p(a + t) = d_0 + d_1 t + ... + d_n t^n,    |d_k| r^k > sum_(i != k) |d_i| r^i :   k zeros within r of a
 //! ```
 //!
-//! The axis is walked along from zero: by steps within which nothing vanishes (k = 0), and across discs that hold one zero, which
-//! is real then, or two, which are real or conjugate.
+//! The axis is walked along from zero: by steps within which nothing vanishes (k = 0), and across
+//! discs that hold one zero, which is real then, or two, which are real or conjugate.
 
 use super::big_float::BigFloat;
 
@@ -18,16 +20,19 @@ pub struct Cluster {
     pub place: BigFloat,
     /// One or two.
     pub count: usize,
-    /// How far two zeros are from their middle, over the place; positive where they are conjugate, negative where they are real.
+    /// How far two zeros are from their middle, over the place; positive where they are conjugate,
+    /// negative where they are real.
     pub distance: f64,
 }
 
-/// All zeros on the positive axis, and the pairs beside it that are closer to each other than to all others, nearest first; `None`
-/// where rounding or a multiple zero hides them, or where zero is a zero.
+/// All zeros on the positive axis, and the pairs beside it that are closer to each other than to
+/// all others, nearest first; `None` where rounding or a multiple zero hides them, or where zero is
+/// a zero.
 pub fn clusters(polynomial: &[BigFloat]) -> Option<Vec<Cluster>> {
     /// Far more steps than any walk needs: some ten for each zero, wherever it is.
     const MOST_STEPS: usize = 20_000;
-    /// A step of a smaller share of the place looks for what is in the way; one of less than the second is none.
+    /// A step of a smaller share of the place looks for what is in the way; one of less than the
+    /// second is none.
     const SHORT: f64 = -4.0;
     const NONE: f64 = -200.0;
     let walk = Walk::new(polynomial)?;
@@ -83,7 +88,8 @@ struct Walk<'a> {
 struct About {
     coefficients: Vec<BigFloat>,
     sizes: Vec<f64>,
-    /// What rounding may have added to all terms together, within the largest disc that is asked for.
+    /// What rounding may have added to all terms together, within the largest disc that is asked
+    /// for.
     noise: f64,
     /// The logarithm of the place, beyond which no disc reaches.
     largest: f64,
@@ -103,7 +109,12 @@ impl<'a> Walk<'a> {
 
     /// Whether all zeros are nearer to the origin than this place.
     fn is_last(&self, at: &BigFloat) -> bool {
-        dominates(&self.sizes, self.sizes.len() - 1, logarithm(at), f64::NEG_INFINITY)
+        dominates(
+            &self.sizes,
+            self.sizes.len() - 1,
+            logarithm(at),
+            f64::NEG_INFINITY,
+        )
     }
 
     /// Taylor's coefficients.
@@ -123,7 +134,10 @@ impl<'a> Walk<'a> {
         let noise = match at.is_zero() {
             true => f64::NEG_INFINITY,
             // Every term takes part in so many sums.
-            false => terms.fold(f64::NEG_INFINITY, f64::max) + 3.0 * (degree as f64 + 2.0).log2() - self.bits as f64,
+            false => {
+                terms.fold(f64::NEG_INFINITY, f64::max) + 3.0 * (degree as f64 + 2.0).log2()
+                    - self.bits as f64
+            }
         };
         About {
             sizes: coefficients.iter().map(logarithm).collect(),
@@ -148,7 +162,14 @@ impl<'a> Walk<'a> {
                 }
             };
             let distance = ratio.abs().sqrt().copysign(ratio);
-            Some((Cluster { place, count, distance }, radius))
+            Some((
+                Cluster {
+                    place,
+                    count,
+                    distance,
+                },
+                radius,
+            ))
         })
     }
 
@@ -160,7 +181,10 @@ impl<'a> Walk<'a> {
         /// The farthest that is ahead, likewise.
         const FAR: f64 = -2.0;
         let step = |about: &About| {
-            let slope = about.coefficients.get(count).filter(|slope| !slope.is_zero())?;
+            let slope = about
+                .coefficients
+                .get(count)
+                .filter(|slope| !slope.is_zero())?;
             let times = BigFloat::of_f64(count as f64, self.bits);
             Some(-&(&(about.coefficients.get(count - 1)? / slope) / &times))
         };
@@ -205,7 +229,8 @@ impl About {
         Some(inside)
     }
 
-    /// The logarithm of the radius of the largest disc with so many zeros, not far beyond the place.
+    /// The logarithm of the radius of the largest disc with so many zeros, not far beyond the
+    /// place.
     fn radius_of(&self, count: usize) -> Option<f64> {
         /// Over the place.
         const LEAST: f64 = -100.0;
@@ -234,7 +259,9 @@ fn dominates(sizes: &[f64], term: usize, radius: f64, noise: f64) -> bool {
         _ => sizes[k] + k as f64 * radius,
     };
     let own = at(term);
-    let others = (0..sizes.len()).filter(|k| *k != term).map(|k| (at(k) - own).exp2());
+    let others = (0..sizes.len())
+        .filter(|k| *k != term)
+        .map(|k| (at(k) - own).exp2());
     own.is_finite() && others.sum::<f64>() + (noise - own).exp2() < SURELY
 }
 
@@ -261,7 +288,9 @@ mod tests {
     /// The product of factors `c_0 + c_1 s + c_2 s^2`.
     fn product(factors: &[[f64; 3]]) -> Vec<BigFloat> {
         let one = vec![number(1.0)];
-        factors.iter().fold(one, |all, factor| times(&all, &factor.map(number)))
+        factors
+            .iter()
+            .fold(one, |all, factor| times(&all, &factor.map(number)))
     }
 
     fn found(polynomial: &[BigFloat]) -> Vec<(f64, usize, f64)> {
@@ -278,7 +307,10 @@ mod tests {
             assert_eq!(found.1, expected.1, "{found:?} {expected:?}");
             // The middle is where the slope vanishes.
             let allowed = 1e-9 + 10.0 * expected.2.powi(2);
-            assert!((found.0 / expected.0 - 1.0).abs() < allowed, "{found:?} {expected:?}");
+            assert!(
+                (found.0 / expected.0 - 1.0).abs() < allowed,
+                "{found:?} {expected:?}"
+            );
             assert!(
                 (found.2 - expected.2).abs() <= 1e-3 * expected.2.abs(),
                 "{found:?} {expected:?}"
@@ -289,7 +321,13 @@ mod tests {
     #[test]
     fn single_zeros_are_found_at_every_scale() {
         let linear = |zero: f64| [-zero, 1.0, 0.0];
-        let polynomial = product(&[linear(1e-9), linear(0.3), linear(0.4), linear(-2.0), linear(1e12)]);
+        let polynomial = product(&[
+            linear(1e-9),
+            linear(0.3),
+            linear(0.4),
+            linear(-2.0),
+            linear(1e12),
+        ]);
         same(
             &found(&polynomial),
             &[(1e-9, 1, 0.0), (0.3, 1, 0.0), (0.4, 1, 0.0), (1e12, 1, 0.0)],
@@ -303,7 +341,11 @@ mod tests {
         for (exponent, sign) in [(-30, 1.0), (-30, -1.0), (-90, 1.0), (-90, -1.0), (-12, 1.0)] {
             let middle = 3.0;
             let small = number(sign).shifted(2 * exponent);
-            let pair = [&number(middle * middle) + &small, number(-2.0 * middle), number(1.0)];
+            let pair = [
+                &number(middle * middle) + &small,
+                number(-2.0 * middle),
+                number(1.0),
+            ];
             let others = product(&[[-0.5, 1.0, 0.0], [50.0, 3.0, 1.0], [-700.0, 1.0, 0.0]]);
             let distance = sign * 2_f64.powi(exponent as i32) / middle;
             let expected = [(0.5, 1, 0.0), (middle, 2, distance), (700.0, 1, 0.0)];
@@ -317,7 +359,8 @@ mod tests {
         );
     }
 
-    /// Chebyshev's polynomial of degree 40, moved to `0 < s < 2`: zeros `1 + cos((2k + 1) pi/80)`, close to each other at the ends.
+    /// Chebyshev's polynomial of degree 40, moved to `0 < s < 2`: zeros `1 + cos((2k + 1) pi/80)`,
+    /// close to each other at the ends.
     #[test]
     fn many_zeros_are_all_found() {
         let mut last = vec![number(1.0)];
@@ -326,7 +369,9 @@ mod tests {
             let twice = times(&[number(-2.0), number(2.0)], &next);
             let new = twice.iter().enumerate();
             let zero = number(0.0);
-            let new = new.map(|(k, value)| value - last.get(k).unwrap_or(&zero)).collect();
+            let new = new
+                .map(|(k, value)| value - last.get(k).unwrap_or(&zero))
+                .collect();
             (last, next) = (next, new);
         }
         let zeros = found(&next);
@@ -338,8 +383,14 @@ mod tests {
             for sign in [-1.0, 1.0].into_iter().take(count) {
                 let expected = rest.next().expect("no more than there are");
                 let zero = place * (1.0 + sign * distance.abs());
-                assert!((zero - expected).abs() < 1e-3, "{place} {count} {distance} {expected}");
-                assert!(count == 2 || (zero - expected).abs() < 1e-12, "{place} {expected}");
+                assert!(
+                    (zero - expected).abs() < 1e-3,
+                    "{place} {count} {distance} {expected}"
+                );
+                assert!(
+                    count == 2 || (zero - expected).abs() < 1e-12,
+                    "{place} {expected}"
+                );
             }
         }
         assert!(rest.next().is_none());

@@ -1,13 +1,15 @@
 //! Derivatives, substitution, and writing out products of sums.
 //!
-//! In comes an expression, out goes one in the same normal form, or the reason why not. The rules are the usual ones:
+//! In comes an expression, out goes one in the same normal form, or the reason why not. The rules
+//! are the usual ones:
 //!
 //! ```text
 //! (u*v)' = u'*v + u*v'        f(u, v)' = f_u*u' + f_v*v'
 //! (u^n)' = n*u^(n-1)*u'       (u^v)'   = u^v*(v'*log(u) + v*u'/u)
 //! ```
 //!
-//! with the partial derivatives f_u from the table of [`Function`]. `x`, `x'` and `x''` are independent variables here.
+//! with the partial derivatives f_u from the table of [`Function`]. `x`, `x'` and `x''` are
+//! independent variables here.
 
 use std::collections::BTreeMap;
 
@@ -16,16 +18,17 @@ use num_traits::ToPrimitive;
 use super::{EXPANSION_LIMIT, Expr, ExprError, Function, Node, normal};
 use crate::symbol::Symbol;
 
-/// The number of factors after which a derivative gives up: the product rule squares the size of a product.
+/// The number of factors after which a derivative gives up: the product rule squares the size of a
+/// product.
 const DERIVATIVE_LIMIT: usize = 300_000;
 
 impl Expr {
-    /// The partial derivative by the symbol. Jumps and kinks are left out: `sgn` and `H` have the derivative 0, `abs`
-    /// has `sgn`, `max(u, v)` has `H(u - v)` by u.
+    /// The partial derivative by the symbol. Jumps and kinks are left out: `sgn` and `H` have the
+    /// derivative 0, `abs` has `sgn`, `max(u, v)` has `H(u - v)` by u.
     ///
     /// # Errors
-    /// A factor of the derivative has no value, as in that of `(-2)^x`; or the product rule would write more than
-    /// 300 000 factors.
+    /// A factor of the derivative has no value, as in that of `(-2)^x`; or the product rule would
+    /// write more than 300 000 factors.
     pub fn differentiate(&self, symbol: Symbol) -> Result<Self, ExprError> {
         let mut written = 0_usize;
         let mut count = |factors: usize| {
@@ -51,7 +54,11 @@ impl Expr {
             }
             Node::Product(coefficient, factors) => {
                 let mut terms = Vec::new();
-                for (index, slope) in slopes.iter().enumerate().filter(|(_, slope)| !slope.is_zero()) {
+                for (index, slope) in slopes
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, slope)| !slope.is_zero())
+                {
                     count(factors.len() + slope.factors().1.len())?;
                     let mut product = factors.clone();
                     product[index] = slope.clone();
@@ -68,7 +75,11 @@ impl Expr {
             },
             Node::Function(function, arguments) => {
                 let mut terms = Vec::new();
-                for (index, slope) in slopes.iter().enumerate().filter(|(_, slope)| !slope.is_zero()) {
+                for (index, slope) in slopes
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, slope)| !slope.is_zero())
+                {
                     count(1 + slope.factors().1.len())?;
                     terms.push(function.derivative(arguments, index)? * slope);
                 }
@@ -77,8 +88,8 @@ impl Expr {
         })
     }
 
-    /// The expression with the value in place of the symbol. Derivatives of a coordinate are symbols of their own and
-    /// stay.
+    /// The expression with the value in place of the symbol. Derivatives of a coordinate are
+    /// symbols of their own and stay.
     ///
     /// # Errors
     /// The result has no value: `1/x` at `x = 0`.
@@ -86,8 +97,8 @@ impl Expr {
         self.substitute_all(&BTreeMap::from([(symbol, value.clone())]))
     }
 
-    /// The expression with all these values put in at once: `x` and `y` can change places. Errors as for
-    /// [`Expr::substitute`].
+    /// The expression with all these values put in at once: `x` and `y` can change places. Errors
+    /// as for [`Expr::substitute`].
     pub fn substitute_all(&self, values: &BTreeMap<Symbol, Self>) -> Result<Self, ExprError> {
         self.fold(|expr, children: &[Self]| {
             if let Some(value) = expr.as_symbol().and_then(|symbol| values.get(&symbol)) {
@@ -104,7 +115,8 @@ impl Expr {
         })
     }
 
-    /// Products and whole powers of sums written out, everywhere in the tree; at most [`EXPANSION_LIMIT`] products.
+    /// Products and whole powers of sums written out, everywhere in the tree; at most
+    /// [`EXPANSION_LIMIT`] products.
     ///
     /// # Errors
     /// [`ExprError::TooManyTerms`] where that is not enough.
@@ -120,8 +132,10 @@ impl Expr {
         let mut budget = Budget { left: limit, limit };
         let mut current = self.clone();
         loop {
-            let next = current.fold(|expr, children: &[Self]| expand_node(expr, children, &mut budget))?;
-            // Factors such as sqrt(1 + x)*sqrt(1 + x) make a new sum: once more, until nothing changes.
+            let next =
+                current.fold(|expr, children: &[Self]| expand_node(expr, children, &mut budget))?;
+            // Factors such as sqrt(1 + x)*sqrt(1 + x) make a new sum: once more, until nothing
+            // changes.
             if next == current {
                 return Ok(next);
             }
@@ -139,7 +153,11 @@ fn power_slope(
     if exponent_slope.is_zero() {
         return match base_slope.is_zero() {
             true => Ok(Expr::zero()),
-            false => Ok(Expr::product([exponent.clone(), lowered()?, base_slope.clone()])),
+            false => Ok(Expr::product([
+                exponent.clone(),
+                lowered()?,
+                base_slope.clone(),
+            ])),
         };
     }
     let logarithm = Expr::function(Function::Log, vec![base.clone()])?;
@@ -173,9 +191,10 @@ impl Budget {
     }
 }
 
-/// How many products of two terms the power of a sum takes, one multiplication after the other, where that is known beforehand: if
-/// every term but one has a symbol of its own, no two products of `m` of the terms are alike, and there are `C(m + n - 1, m)` of them
-/// for `n` terms. Zero where some may be alike; no longer counted where there are more than `enough`.
+/// How many products of two terms the power of a sum takes, one multiplication after the other,
+/// where that is known beforehand: if every term but one has a symbol of its own, no two products
+/// of `m` of the terms are alike, and there are `C(m + n - 1, m)` of them for `n` terms. Zero where
+/// some may be alike; no longer counted where there are more than `enough`.
 fn products_of_power(terms: &[Expr], times: u32, enough: usize) -> usize {
     let mut shared = 0;
     for term in terms {
@@ -230,7 +249,12 @@ fn expand_node(expr: &Expr, children: &[Expr], budget: &mut Budget) -> Result<Ex
 }
 
 fn multiply(a: &Expr, b: &Expr, budget: &mut Budget) -> Result<Expr, ExprError> {
-    budget.spend(a.terms().len().saturating_mul(b.terms().len()).saturating_sub(1))?;
+    budget.spend(
+        a.terms()
+            .len()
+            .saturating_mul(b.terms().len())
+            .saturating_sub(1),
+    )?;
     let pairs = a
         .terms()
         .iter()
@@ -273,7 +297,10 @@ mod tests {
             }
         }
         for long in ["(x + y + z + 1)^60", "(1 + x)^10000"] {
-            assert_eq!(parsed(long).expand(), Err(ExprError::TooManyTerms(EXPANSION_LIMIT)));
+            assert_eq!(
+                parsed(long).expand(),
+                Err(ExprError::TooManyTerms(EXPANSION_LIMIT))
+            );
         }
     }
 
@@ -324,7 +351,8 @@ mod tests {
             parsed("(-2)^x").differentiate(x).unwrap_err(),
             ExprError::Undefined("log(-2)".into())
         );
-        let wide = Expr::product((1..2_000).map(|k| (Expr::from(k) * Expr::from(x)).sin().unwrap()));
+        let wide =
+            Expr::product((1..2_000).map(|k| (Expr::from(k) * Expr::from(x)).sin().unwrap()));
         assert_eq!(
             wide.differentiate(x).unwrap_err(),
             ExprError::TooManyTerms(DERIVATIVE_LIMIT)
@@ -352,8 +380,14 @@ mod tests {
         for text in ["1/x", "log(x)", "x^x", "y/sin(x)", "tan(pi/2 + x)"] {
             assert!(parsed(text).substitute(x, &Expr::zero()).is_err(), "{text}");
         }
-        let swap = BTreeMap::from([(x, Expr::symbol("y")), (Symbol::new("y"), Expr::symbol("x"))]);
-        assert_eq!(parsed("x - 2*y").substitute_all(&swap).unwrap(), parsed("y - 2*x"));
+        let swap = BTreeMap::from([
+            (x, Expr::symbol("y")),
+            (Symbol::new("y"), Expr::symbol("x")),
+        ]);
+        assert_eq!(
+            parsed("x - 2*y").substitute_all(&swap).unwrap(),
+            parsed("y - 2*x")
+        );
     }
 
     #[test]

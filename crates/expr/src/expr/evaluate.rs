@@ -1,10 +1,12 @@
 //! Numbers out of expressions.
 //!
-//! In comes an expression and values of its symbols, out goes an `f64`. [`Expr::evaluate`] is for a single value and
-//! refuses what is not finite; [`CompiledFunction`] is for integrators, which call one expression millions of times.
+//! In comes an expression and values of its symbols, out goes an `f64`. [`Expr::evaluate`] is for a
+//! single value and refuses what is not finite; [`CompiledFunction`] is for integrators, which call
+//! one expression millions of times.
 //!
-//! A product in which a factor built from `H` and `sgn` alone is zero is zero, whatever the other factors are:
-//! `(x - xc)^(3/2)*H(x - xc)` is 0 on the near side of the barrier, where the power has no real value.
+//! A product in which a factor built from `H` and `sgn` alone is zero is zero, whatever the other
+//! factors are: `(x - xc)^(3/2)*H(x - xc)` is 0 on the near side of the barrier, where the power
+//! has no real value.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -33,7 +35,8 @@ pub enum EvaluationError {
 }
 
 impl Expr {
-    /// The value at this point, rounded at each operation. Values of symbols that do not occur are ignored.
+    /// The value at this point, rounded at each operation. Values of symbols that do not occur are
+    /// ignored.
     ///
     /// # Errors
     /// A symbol has no value, or the result is not a finite number.
@@ -68,10 +71,11 @@ impl Expr {
     }
 }
 
-/// An expression as a straight list of floating-point operations, each equal subexpression computed once.
+/// An expression as a straight list of floating-point operations, each equal subexpression computed
+/// once.
 ///
-/// A call costs one operation per distinct node; small whole powers are multiplications and `u^(3/2)` is `u*sqrt(u)`.
-/// Nothing is allocated unless the list has more than 64 values.
+/// A call costs one operation per distinct node; small whole powers are multiplications and
+/// `u^(3/2)` is `u*sqrt(u)`. Nothing is allocated unless the list has more than 64 values.
 ///
 /// ```
 /// # use lindstedt_expr as lindstedt;
@@ -89,7 +93,8 @@ pub struct CompiledFunction {
     result: usize,
 }
 
-/// Operands are places in one row of values: arguments, constants, then the result of each instruction in turn.
+/// Operands are places in one row of values: arguments, constants, then the result of each
+/// instruction in turn.
 #[derive(Clone, Copy, Debug)]
 enum Instruction {
     Add(usize, usize),
@@ -124,8 +129,9 @@ impl CompiledFunction {
         Ok(compiler.finish(result))
     }
 
-    /// The value at these arguments: NaN where the expression has no real value, infinite at a pole, and NaN if the
-    /// number of arguments is not that of the symbols given to [`CompiledFunction::new`].
+    /// The value at these arguments: NaN where the expression has no real value, infinite at a
+    /// pole, and NaN if the number of arguments is not that of the symbols given to
+    /// [`CompiledFunction::new`].
     pub fn call(&self, arguments: &[f64]) -> f64 {
         // Most forces are short: clearing more places than they need is a fifth of a call.
         const SHORT: usize = 16;
@@ -218,12 +224,19 @@ impl Compiler<'_> {
             (Node::Number(value), _) => self.constant(to_f64(value)),
             (Node::Pi, _) => self.constant(std::f64::consts::PI),
             (Node::Symbol(symbol), _) => {
-                let place = self.arguments.iter().position(|argument| argument == symbol);
+                let place = self
+                    .arguments
+                    .iter()
+                    .position(|argument| argument == symbol);
                 Slot::Argument(place.ok_or(EvaluationError::MissingSymbol(*symbol))?)
             }
             (Node::Sum(terms), _) => self.sum(terms, children),
-            (Node::Product(coefficient, factors), _) => self.product(coefficient, factors, children),
-            (Node::Power(base, exponent), _) if self.shift(base, exponent.as_number()).is_some() => {
+            (Node::Product(coefficient, factors), _) => {
+                self.product(coefficient, factors, children)
+            }
+            (Node::Power(base, exponent), _)
+                if self.shift(base, exponent.as_number()).is_some() =>
+            {
                 self.product(&Rational::one(), std::slice::from_ref(expr), children)
             }
             (Node::Power(_, exponent), [base, exponent_slot]) => match exponent.as_number() {
@@ -235,9 +248,11 @@ impl Compiler<'_> {
                 Some(number) => self.power(*base, number),
                 None => self.emit(Operation::Pair(Instruction::Power, *base, *exponent_slot)),
             },
-            (Node::Function(function, _), [first, ..]) => {
-                self.function(*function, *first, children.get(1).copied().unwrap_or(*first))
-            }
+            (Node::Function(function, _), [first, ..]) => self.function(
+                *function,
+                *first,
+                children.get(1).copied().unwrap_or(*first),
+            ),
             (Node::Power(..) | Node::Function(..), _) => self.constant(f64::NAN),
         };
         self.known.insert(expr.clone(), slot);
@@ -246,7 +261,8 @@ impl Compiler<'_> {
         Ok(slot)
     }
 
-    /// By how many bits the numbers in an expression make it large, those of the sums in it included.
+    /// By how many bits the numbers in an expression make it large, those of the sums in it
+    /// included.
     fn size(&self, expr: &Expr) -> i64 {
         let of = |part: &Expr| self.sizes.get(part).copied().unwrap_or(0);
         match expr.node() {
@@ -264,11 +280,12 @@ impl Compiler<'_> {
         }
     }
 
-    /// The shift of a sum whose numbers are so large that a few of them in a product, or what makes up for them before it, are beyond
-    /// double precision; none for other bases and exponents.
+    /// The shift of a sum whose numbers are so large that a few of them in a product, or what makes
+    /// up for them before it, are beyond double precision; none for other bases and exponents.
     fn shift(&self, base: &Expr, exponent: Option<&Rational>) -> Option<Shift> {
         const LONG: u64 = 200;
-        /// What is larger is no number of anybody's equation, and beyond double precision whatever stands before it.
+        /// What is larger is no number of anybody's equation, and beyond double precision whatever
+        /// stands before it.
         const LONGEST: u64 = 100_000;
         let size = match base.node() {
             Node::Sum(_) => u64::try_from(self.sizes.get(base).copied()?).ok()?,
@@ -294,7 +311,8 @@ impl Compiler<'_> {
                 None => *slot,
                 Some(total) => match term.node() {
                     Node::Product(coefficient, factors) if (-coefficient).is_one() => {
-                        // The product without its minus is compiled afresh; what it shares is known already.
+                        // The product without its minus is compiled afresh; what it shares is known
+                        // already.
                         let positive = self.positive_product(factors);
                         self.emit(Operation::Pair(Instruction::Subtract, total, positive))
                     }
@@ -314,8 +332,10 @@ impl Compiler<'_> {
     }
 
     fn product(&mut self, coefficient: &Rational, factors: &[Expr], slots: &[Slot]) -> Slot {
-        let (mut above, mut below, mut gate): (Option<Slot>, Option<Slot>, Option<Slot>) = (None, None, None);
-        // Sums whose numbers are beyond double precision enter divided by a power of two, which is made up for at once.
+        let (mut above, mut below, mut gate): (Option<Slot>, Option<Slot>, Option<Slot>) =
+            (None, None, None);
+        // Sums whose numbers are beyond double precision enter divided by a power of two, which is
+        // made up for at once.
         let mut coefficient = coefficient.clone();
         let mut places: Vec<(Slot, Option<Slot>)> = Vec::with_capacity(slots.len());
         for (factor, slot) in factors.iter().zip(slots) {
@@ -361,7 +381,9 @@ impl Compiler<'_> {
             result = Some(self.emit(Operation::Pair(Instruction::Divide, above, below)));
         }
         match (gate, result) {
-            (Some(gate), Some(result)) => self.emit(Operation::Pair(Instruction::Gate, gate, result)),
+            (Some(gate), Some(result)) => {
+                self.emit(Operation::Pair(Instruction::Gate, gate, result))
+            }
             (gate, result) => gate.or(result).unwrap_or_else(|| self.constant(1.0)),
         }
     }
@@ -447,7 +469,8 @@ impl Compiler<'_> {
         Slot::Result(self.code.len() - 1)
     }
 
-    /// Leaves out what nothing uses, such as the reciprocals that became divisions, and numbers the rest.
+    /// Leaves out what nothing uses, such as the reciprocals that became divisions, and numbers the
+    /// rest.
     fn finish(self, result: Slot) -> CompiledFunction {
         let mut constant_used = vec![false; self.constants.len()];
         let mut result_used = vec![false; self.code.len()];
@@ -498,7 +521,8 @@ struct Shift {
 
 /// A factor whose zero covers a whole interval, on which the other factors need no value.
 fn is_gate(factor: &Expr) -> bool {
-    factor.is_stepwise() && (factor.contains_function(Function::Step) || factor.contains_function(Function::Sign))
+    factor.is_stepwise()
+        && (factor.contains_function(Function::Step) || factor.contains_function(Function::Sign))
 }
 
 /// Consecutive places from `start` for what is used, and the first place after them.
@@ -526,7 +550,9 @@ fn kept<T>(items: Vec<T>, used: &[bool]) -> impl Iterator<Item = T> {
 impl Operation {
     fn operands(&self) -> [Option<Slot>; 2] {
         match *self {
-            Self::Pair(_, a, b) | Self::OddRoot(a, b, _) | Self::Binary(_, a, b) => [Some(a), Some(b)],
+            Self::Pair(_, a, b) | Self::OddRoot(a, b, _) | Self::Binary(_, a, b) => {
+                [Some(a), Some(b)]
+            }
             Self::IntegerPower(a, _) | Self::SquareRoot(a) | Self::Unary(_, a) => [Some(a), None],
         }
     }
@@ -549,9 +575,10 @@ mod tests {
     use crate::expr::parse_expression;
 
     fn at(text: &str, x: f64) -> Result<f64, EvaluationError> {
-        parse_expression(text)
-            .unwrap()
-            .evaluate(&BTreeMap::from([(Symbol::new("x"), x), (Symbol::new("k"), 4.0)]))
+        parse_expression(text).unwrap().evaluate(&BTreeMap::from([
+            (Symbol::new("x"), x),
+            (Symbol::new("k"), 4.0),
+        ]))
     }
 
     #[test]
@@ -579,7 +606,11 @@ mod tests {
             ("sgn(x) + H(x) + abs(x)", -2.0, 1.0),
             ("sgn(x) + H(x)", 0.0, 0.0),
             ("max(x, 1) + min(x, 1)", 3.0, 4.0),
-            ("atan(x) - asin(x) + acos(x)", 0.0, std::f64::consts::FRAC_PI_2),
+            (
+                "atan(x) - asin(x) + acos(x)",
+                0.0,
+                std::f64::consts::FRAC_PI_2,
+            ),
         ] {
             let value = at(text, x).unwrap();
             assert!(
@@ -589,7 +620,8 @@ mod tests {
         }
     }
 
-    /// On the near side of the barrier the contact force is exactly zero although its power has no value there.
+    /// On the near side of the barrier the contact force is exactly zero although its power has no
+    /// value there.
     #[test]
     fn a_step_that_is_zero_wins() {
         for text in [
@@ -616,16 +648,27 @@ mod tests {
             ("x^x", -0.5),
             ("exp(x)", 1000.0),
         ] {
-            assert!(matches!(at(text, x), Err(EvaluationError::Undefined { .. })), "{text}");
+            assert!(
+                matches!(at(text, x), Err(EvaluationError::Undefined { .. })),
+                "{text}"
+            );
         }
-        assert_eq!(at("x + y", 1.0), Err(EvaluationError::MissingSymbol(Symbol::new("y"))));
+        assert_eq!(
+            at("x + y", 1.0),
+            Err(EvaluationError::MissingSymbol(Symbol::new("y")))
+        );
         assert_eq!(
             at("sqrt(x)", -1.0).unwrap_err().to_string(),
             "`sqrt(x)` has no finite value at x = -1"
         );
         let x = parse_expression("x").unwrap();
         assert!(CompiledFunction::new(&x, &[]).is_err());
-        assert!(CompiledFunction::new(&x, &["x".into()]).unwrap().call(&[]).is_nan());
+        assert!(
+            CompiledFunction::new(&x, &["x".into()])
+                .unwrap()
+                .call(&[])
+                .is_nan()
+        );
     }
 
     #[test]
@@ -637,13 +680,17 @@ mod tests {
         assert!(compiled.instructions.len() <= 11, "{compiled:?}");
         let expected = 0.5_f64.sin() + (2.0 + 3.0 * 0.1) * 0.25_f64.powi(3);
         assert!((compiled.call(&[0.5, 0.1, 0.4375, 2.0, 3.0]) - expected).abs() < 1e-15);
-        let quotient = CompiledFunction::new(&parse_expression("x/(x'*xc)").unwrap(), &names).unwrap();
+        let quotient =
+            CompiledFunction::new(&parse_expression("x/(x'*xc)").unwrap(), &names).unwrap();
         assert_eq!(quotient.instructions.len(), 2, "{quotient:?}");
     }
 
     #[test]
     fn powers_of_sums_with_numbers_beyond_doubles() {
-        let (large, root) = (format!("1{}", "0".repeat(402)), format!("1{}", "0".repeat(201)));
+        let (large, root) = (
+            format!("1{}", "0".repeat(402)),
+            format!("1{}", "0".repeat(201)),
+        );
         let sum = format!("({large} + {large}*x + x^2)");
         for (text, value) in [
             (format!("sqrt{sum}/{root}"), 2.0),
@@ -654,7 +701,9 @@ mod tests {
             (format!("{root}*{root}*x/{sum}"), 0.75),
         ] {
             let found = at(&text, 3.0);
-            let close = found.as_ref().is_ok_and(|found| (found / value - 1.0).abs() < 1e-14);
+            let close = found
+                .as_ref()
+                .is_ok_and(|found| (found / value - 1.0).abs() < 1e-14);
             assert!(close, "{found:?} for {value}");
         }
     }

@@ -10,8 +10,8 @@ use super::Expr;
 use crate::exact::Rational;
 
 impl Expr {
-    /// The sum with the powers that stand in every term in front of it; as it is where there are none, or it would be longer to
-    /// read.
+    /// The sum with the powers that stand in every term in front of it; as it is where there are
+    /// none, or it would be longer to read.
     ///
     /// ```
     /// # use lindstedt_expr as lindstedt;
@@ -22,7 +22,9 @@ impl Expr {
     /// ```
     pub fn factored(&self) -> Self {
         let shorter = |written: &Self| written.to_string().len() <= self.to_string().len();
-        common_factor(self).filter(shorter).unwrap_or_else(|| self.clone())
+        common_factor(self)
+            .filter(shorter)
+            .unwrap_or_else(|| self.clone())
     }
 }
 
@@ -51,7 +53,8 @@ fn common_factor(sum: &Expr) -> Option<Expr> {
         let least = exponents.iter().min()?;
         let most = exponents.iter().max()?;
         let is_sum = base.terms().len() > 1;
-        // Below the line a sum is taken with its highest power: the others are written out above it.
+        // Below the line a sum is taken with its highest power: the others are written out above
+        // it.
         let shared = match (least.is_positive(), most.is_negative()) {
             (true, _) => least,
             (_, true) if is_sum && (least - most).is_integer() => least,
@@ -76,10 +79,19 @@ mod tests {
     #[test]
     fn what_is_common_stands_in_front() {
         for (text, factored) in [
-            ("-4*cos(A)/A^2 + 4*cos(A/2)/A^2", "4*(cos(A/2) - cos(A))/A^2"),
-            ("2/A^2 - 2/(A^2*sqrt(1 + A^2))", "2*(1 - 1/sqrt(1 + A^2))/A^2"),
+            (
+                "-4*cos(A)/A^2 + 4*cos(A/2)/A^2",
+                "4*(cos(A/2) - cos(A))/A^2",
+            ),
+            (
+                "2/A^2 - 2/(A^2*sqrt(1 + A^2))",
+                "2*(1 - 1/sqrt(1 + A^2))/A^2",
+            ),
             ("4/(4 + A^2) - 8*A^2/(4 + A^2)^2", "4*(4 - A^2)/(4 + A^2)^2"),
-            ("2/sqrt(4 + A^2) - 2*A^2/(4 + A^2)^(3/2)", "8/(4 + A^2)^(3/2)"),
+            (
+                "2/sqrt(4 + A^2) - 2*A^2/(4 + A^2)^(3/2)",
+                "8/(4 + A^2)^(3/2)",
+            ),
             ("k*A^2*sin(A) - k*A*cos(A)", "k*A*(A*sin(A) - cos(A))"),
             // Nothing to take out, or longer with it.
             ("1 + sqrt(A) - A^2/8", "1 + sqrt(A) - A^2/8"),
@@ -88,7 +100,8 @@ mod tests {
         ] {
             let expr: Expr = text.parse().expect(text);
             assert_eq!(expr.factored().to_string(), factored, "{text}");
-            let difference = (&expr - &expr.factored()).evaluate(&[("A".into(), 0.7), ("k".into(), 1.3)].into());
+            let difference =
+                (&expr - &expr.factored()).evaluate(&[("A".into(), 0.7), ("k".into(), 1.3)].into());
             assert!(difference.expect(text).abs() < 1e-13, "{text}");
         }
     }

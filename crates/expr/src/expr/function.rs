@@ -1,11 +1,12 @@
 //! The functions an expression may use: one table, one entry each.
 //!
-//! To add a function, add a variant to [`Function`] and an entry to [`TABLE`]: its name, how many arguments it takes,
-//! its parity, its value as a floating-point number, its exact values, and its partial derivatives. Parsing, printing,
-//! simplification, calculus and evaluation read the table; Taylor coefficients are with the series.
+//! To add a function, add a variant to [`Function`] and an entry to [`TABLE`]: its name, how many
+//! arguments it takes, its parity, its value as a floating-point number, its exact values, and its
+//! partial derivatives. Parsing, printing, simplification, calculus and evaluation read the table;
+//! Taylor coefficients are with the series.
 //!
-//! The last entries are special functions that occur in answers alone: an equation of motion may use their names for
-//! parameters (`K*x`, `J0*x''`), and writes none of them.
+//! The last entries are special functions that occur in answers alone: an equation of motion may
+//! use their names for parameters (`K*x`, `J0*x''`), and writes none of them.
 
 use num_integer::Integer as _;
 use num_traits::{One, Signed, ToPrimitive, Zero};
@@ -51,8 +52,8 @@ pub enum Function {
     Maximum,
     /// `min` of two arguments
     Minimum,
-    /// `H`, the Heaviside step: 1 where the argument is positive, 0 elsewhere. H(0) = 0: a surface that is just touched
-    /// exerts no force.
+    /// `H`, the Heaviside step: 1 where the argument is positive, 0 elsewhere. H(0) = 0: a surface
+    /// that is just touched exerts no force.
     Step,
     /// `J0`, the Bessel function of the first kind
     BesselJ0,
@@ -64,7 +65,8 @@ pub enum Function {
     BesselI1,
     /// `Gamma`
     Gamma,
-    /// `K`, the complete elliptic integral of the first kind as a function of the parameter m = k^2 < 1
+    /// `K`, the complete elliptic integral of the first kind as a function of the parameter m = k^2
+    /// < 1
     EllipticK,
     /// `sn(u, m)`, the elliptic function of Jacobi with the parameter m = k^2 up to one
     JacobiSn,
@@ -122,15 +124,18 @@ impl Function {
         }
     }
 
-    /// The partial derivative by the argument of this index (0 or 1), at these arguments. The jumps of `sgn` and `H`
-    /// and the kinks of `abs`, `max` and `min` are left out: the derivative is that of the smooth pieces.
+    /// The partial derivative by the argument of this index (0 or 1), at these arguments. The jumps
+    /// of `sgn` and `H` and the kinks of `abs`, `max` and `min` are left out: the derivative is
+    /// that of the smooth pieces.
     ///
     /// # Errors
     /// The derivative has no value at these arguments.
     pub fn derivative(self, arguments: &[Expr], index: usize) -> Result<Expr, ExprError> {
         match arguments {
             [only] if self.argument_count() == 1 => (self.entry().derivative)(only, only, index),
-            [first, second] if self.argument_count() == 2 => (self.entry().derivative)(first, second, index),
+            [first, second] if self.argument_count() == 2 => {
+                (self.entry().derivative)(first, second, index)
+            }
             _ => Err(self.wrong_arguments(arguments.len())),
         }
     }
@@ -142,8 +147,10 @@ impl Function {
             return Err(self.wrong_arguments(arguments.len()));
         }
         if let [first, ..] = arguments.as_slice() {
-            let exact = (entry.exact)(first, arguments.get(1).unwrap_or(first))
-                .map_err(|NoValue| ExprError::Undefined(print::call_in_message(self, &arguments)))?;
+            let exact =
+                (entry.exact)(first, arguments.get(1).unwrap_or(first)).map_err(|NoValue| {
+                    ExprError::Undefined(print::call_in_message(self, &arguments))
+                })?;
             if let Some(exact) = exact {
                 return Ok(exact);
             }
@@ -187,10 +194,11 @@ struct Entry {
     name: &'static str,
     parity: Parity,
     value: Value,
-    /// The exact value at these arguments where there is one: `None` to keep the function, [`NoValue`] to refuse. A
-    /// function of one argument gets it twice.
+    /// The exact value at these arguments where there is one: `None` to keep the function,
+    /// [`NoValue`] to refuse. A function of one argument gets it twice.
     exact: fn(&Expr, &Expr) -> Result<Option<Expr>, NoValue>,
-    /// The partial derivative by the argument of the index. A function of one argument gets it twice.
+    /// The partial derivative by the argument of the index. A function of one argument gets it
+    /// twice.
     derivative: fn(&Expr, &Expr, usize) -> Result<Expr, ExprError>,
 }
 
@@ -215,9 +223,12 @@ enum Parity {
 struct NoValue;
 
 use Function::{
-    Absolute, Acos, Asin, Asinh, Atan, Cos, Cosh, Exp, Log, Maximum, Minimum, Sign, Sin, Sinh, Step, Tan, Tanh,
+    Absolute, Acos, Asin, Asinh, Atan, Cos, Cosh, Exp, Log, Maximum, Minimum, Sign, Sin, Sinh,
+    Step, Tan, Tanh,
 };
-use Function::{BesselI0, BesselI1, BesselJ0, BesselJ1, EllipticK, Gamma, JacobiCn, JacobiDn, JacobiSn};
+use Function::{
+    BesselI0, BesselI1, BesselJ0, BesselJ1, EllipticK, Gamma, JacobiCn, JacobiDn, JacobiSn,
+};
 use Value::{One as Unary, Two as Binary};
 
 /// The entries stand in the order of the variants of [`Function`].
@@ -282,7 +293,9 @@ static TABLE: [Entry; 26] = [
             Some(number) if beyond_one(number) => Err(NoValue),
             _ => Ok(at(u, 0, Expr::zero).or_else(|| at(u, 1, || turn(1, 2)))),
         },
-        derivative: |u, _, _| Expr::divide(&Expr::one(), &(Expr::one() - u.integer_power(2)?).sqrt()?),
+        derivative: |u, _, _| {
+            Expr::divide(&Expr::one(), &(Expr::one() - u.integer_power(2)?).sqrt()?)
+        },
     },
     Entry {
         function: Acos,
@@ -295,7 +308,12 @@ static TABLE: [Entry; 26] = [
                 .or_else(|| at(u, 0, || turn(1, 2)))
                 .or_else(|| at(u, -1, Expr::pi))),
         },
-        derivative: |u, _, _| Expr::divide(&Expr::from(-1), &(Expr::one() - u.integer_power(2)?).sqrt()?),
+        derivative: |u, _, _| {
+            Expr::divide(
+                &Expr::from(-1),
+                &(Expr::one() - u.integer_power(2)?).sqrt()?,
+            )
+        },
     },
     Entry {
         function: Atan,
@@ -311,7 +329,9 @@ static TABLE: [Entry; 26] = [
         parity: Parity::Odd,
         value: Unary(f64::asinh),
         exact: |u, _| Ok(at(u, 0, Expr::zero)),
-        derivative: |u, _, _| Expr::divide(&Expr::one(), &(Expr::one() + u.integer_power(2)?).sqrt()?),
+        derivative: |u, _, _| {
+            Expr::divide(&Expr::one(), &(Expr::one() + u.integer_power(2)?).sqrt()?)
+        },
     },
     Entry {
         function: Exp,
@@ -352,7 +372,13 @@ static TABLE: [Entry; 26] = [
         function: Maximum,
         name: "max",
         parity: Parity::Symmetric,
-        value: Binary(|u, v| if u.is_nan() || v.is_nan() { f64::NAN } else { u.max(v) }),
+        value: Binary(|u, v| {
+            if u.is_nan() || v.is_nan() {
+                f64::NAN
+            } else {
+                u.max(v)
+            }
+        }),
         exact: |u, v| Ok(extreme(u, v, std::cmp::Ordering::Greater)),
         derivative: |u, v, index| match index {
             0 => call(Step, &(u - v)),
@@ -363,7 +389,13 @@ static TABLE: [Entry; 26] = [
         function: Minimum,
         name: "min",
         parity: Parity::Symmetric,
-        value: Binary(|u, v| if u.is_nan() || v.is_nan() { f64::NAN } else { u.min(v) }),
+        value: Binary(|u, v| {
+            if u.is_nan() || v.is_nan() {
+                f64::NAN
+            } else {
+                u.min(v)
+            }
+        }),
         exact: |u, v| Ok(extreme(u, v, std::cmp::Ordering::Less)),
         derivative: |u, v, index| match index {
             0 => Ok(Expr::one() - call(Step, &(u - v))?),
@@ -375,10 +407,14 @@ static TABLE: [Entry; 26] = [
         name: "H",
         parity: Parity::None,
         value: Unary(step),
-        exact: |u, _| Ok(u.as_number().map(|number| Expr::from(i64::from(number.is_positive())))),
+        exact: |u, _| {
+            Ok(u.as_number()
+                .map(|number| Expr::from(i64::from(number.is_positive()))))
+        },
         derivative: |_, _, _| Ok(Expr::zero()),
     },
-    // NIST Digital Library of Mathematical Functions 10.6 and 10.29: J0' = -J1, J1' = J0 - J1/u, I0' = I1, I1' = I0 - I1/u.
+    // NIST Digital Library of Mathematical Functions 10.6 and 10.29: J0' = -J1, J1' = J0 - J1/u,
+    // I0' = I1, I1' = I0 - I1/u.
     Entry {
         function: BesselJ0,
         name: "J0",
@@ -444,7 +480,8 @@ static TABLE: [Entry; 26] = [
             )))
         },
     },
-    // NIST Digital Library of Mathematical Functions 22.13: sn' = cn dn, cn' = -sn dn, dn' = -m sn cn.
+    // NIST Digital Library of Mathematical Functions 22.13: sn' = cn dn, cn' = -sn dn, dn' = -m sn
+    // cn.
     Entry {
         function: JacobiSn,
         name: "sn",
@@ -493,7 +530,12 @@ fn no_slope(function: Function, u: &Expr, m: &Expr) -> ExprError {
 }
 
 /// An elliptic function at zero, or of the parameter zero, where it is circular.
-fn limit_of_jacobi(u: &Expr, m: &Expr, at_zero: fn() -> Expr, circular: Function) -> Result<Option<Expr>, NoValue> {
+fn limit_of_jacobi(
+    u: &Expr,
+    m: &Expr,
+    at_zero: fn() -> Expr,
+    circular: Function,
+) -> Result<Option<Expr>, NoValue> {
     match m.as_number() {
         Some(number) if *number > Rational::one() => Err(NoValue),
         Some(number) if number.is_zero() => call(circular, u).map(Some).map_err(|_| NoValue),
@@ -530,7 +572,8 @@ fn gamma_of_halves(u: &Rational) -> Option<Expr> {
     Some(&Expr::number(factor) * &start)
 }
 
-/// K(m) for every m < 1, below zero by K(m) = K(m/(m - 1))/sqrt(1 - m) (NIST Digital Library of Mathematical Functions 19.7.2).
+/// K(m) for every m < 1, below zero by K(m) = K(m/(m - 1))/sqrt(1 - m) (NIST Digital Library of
+/// Mathematical Functions 19.7.2).
 fn elliptic_k(m: f64) -> f64 {
     if m >= 1.0 || m.is_nan() {
         f64::NAN
@@ -578,7 +621,11 @@ fn extreme(u: &Expr, v: &Expr, wanted: std::cmp::Ordering) -> Option<Expr> {
         return Some(u.clone());
     }
     let order = number::compare(u.as_number()?, v.as_number()?);
-    Some(if order == wanted { u.clone() } else { v.clone() })
+    Some(if order == wanted {
+        u.clone()
+    } else {
+        v.clone()
+    })
 }
 
 fn sign(u: f64) -> f64 {
@@ -605,28 +652,41 @@ mod tests {
     fn the_table_stands_in_the_order_of_the_variants() {
         for (place, entry) in TABLE.iter().enumerate() {
             assert_eq!(entry.function as usize, place);
-            assert_eq!(Function::from_name_in_answers(entry.name), Some(entry.function));
-            assert_eq!(Function::from_name(entry.name).is_none(), entry.function.is_special());
+            assert_eq!(
+                Function::from_name_in_answers(entry.name),
+                Some(entry.function)
+            );
+            assert_eq!(
+                Function::from_name(entry.name).is_none(),
+                entry.function.is_special()
+            );
         }
     }
 
-    /// By their integrals (NIST Digital Library of Mathematical Functions 10.9.2, 10.32.3, 5.9.1, 19.2.8), which share
-    /// nothing with the library.
+    /// By their integrals (NIST Digital Library of Mathematical Functions 10.9.2, 10.32.3,
+    /// 5.9.1, 19.2.8), which share nothing with the library.
     #[test]
     fn special_functions_are_their_integrals() {
         use lindstedt_numeric::numeric::ode::quadrature::integrate_smooth;
         use std::f64::consts::PI;
-        let integral = |f: &dyn Fn(f64) -> f64, to: f64| integrate_smooth(f, 0.0, to, 1e-14).unwrap().0;
+        let integral =
+            |f: &dyn Fn(f64) -> f64, to: f64| integrate_smooth(f, 0.0, to, 1e-14).unwrap().0;
         for u in [0.1, 0.7, 1.5, 3.0, 7.0] {
             for (function, value) in [
                 (BesselJ0, integral(&|t| (u * t.sin()).cos(), PI) / PI),
                 (BesselJ1, integral(&|t| (t - u * t.sin()).cos(), PI) / PI),
                 (BesselI0, integral(&|t| (u * t.cos()).exp(), PI) / PI),
-                (BesselI1, integral(&|t| (u * t.cos()).exp() * t.cos(), PI) / PI),
+                (
+                    BesselI1,
+                    integral(&|t| (u * t.cos()).exp() * t.cos(), PI) / PI,
+                ),
                 // t = s^8 leaves a smooth integrand for every u > 1/8.
                 (
                     Gamma,
-                    integral(&|s| 8.0 * s.powf(8.0 * (u + 0.2) - 1.0) * (-s.powi(8)).exp(), 1.8),
+                    integral(
+                        &|s| 8.0 * s.powf(8.0 * (u + 0.2) - 1.0) * (-s.powi(8)).exp(),
+                        1.8,
+                    ),
                 ),
             ] {
                 let u = if function == Gamma { u + 0.2 } else { u };
@@ -639,7 +699,10 @@ mod tests {
         }
         for m in [-50.0, -1.0, -0.3, 0.0, 0.4, 0.9, 0.999] {
             let value = integral(&|t| (1.0 - m * t.sin().powi(2)).sqrt().recip(), 0.5 * PI);
-            assert!((EllipticK.value(m, 0.0) / value - 1.0).abs() < 1e-13, "K({m})");
+            assert!(
+                (EllipticK.value(m, 0.0) / value - 1.0).abs() < 1e-13,
+                "K({m})"
+            );
         }
         assert_eq!(
             Expr::function(Gamma, vec![Expr::number(ratio(5, 2))])
@@ -652,12 +715,16 @@ mod tests {
     /// What simplification claims must be what the numbers say.
     #[test]
     fn exact_values_agree_with_the_numbers() {
-        let points = ["0", "1", "-1", "1/2", "-2", "pi", "pi/2", "-3*pi/2", "2*pi", "5*pi/2"];
+        let points = [
+            "0", "1", "-1", "1/2", "-2", "pi", "pi/2", "-3*pi/2", "2*pi", "5*pi/2",
+        ];
         for function in Function::all() {
             for first in points {
                 for second in ["0", "-2", "pi"] {
-                    let [first, second]: [Expr; 2] = [first, second].map(|text| text.parse().unwrap());
-                    let values = [&first, &second].map(|point| point.evaluate(&BTreeMap::new()).unwrap());
+                    let [first, second]: [Expr; 2] =
+                        [first, second].map(|text| text.parse().unwrap());
+                    let values =
+                        [&first, &second].map(|point| point.evaluate(&BTreeMap::new()).unwrap());
                     let arguments = [first, second][..function.argument_count()].to_vec();
                     let expected = function.value(values[0], values[1]);
                     match function.apply(arguments.clone()) {
@@ -698,7 +765,9 @@ mod tests {
             match entry.parity {
                 Parity::Even => assert_eq!(plus, minus, "{}", entry.name),
                 Parity::Odd => assert_eq!(plus, -minus, "{}", entry.name),
-                Parity::Symmetric => assert_eq!(plus, entry.function.value(0.7, 0.3), "{}", entry.name),
+                Parity::Symmetric => {
+                    assert_eq!(plus, entry.function.value(0.7, 0.3), "{}", entry.name)
+                }
                 Parity::None => assert_ne!(plus.abs(), minus.abs(), "{}", entry.name),
             }
         }

@@ -1,7 +1,9 @@
-//! The elliptic functions of Jacobi, `sn`, `cn` and `dn`, of a real argument and a parameter `m = k^2` up to one.
+//! The elliptic functions of Jacobi, `sn`, `cn` and `dn`, of a real argument and a parameter
+//! `m = k^2` up to one.
 //!
-//! References: M. Abramowitz, I. A. Stegun, *Handbook of Mathematical Functions*, Dover 1972, 16.4 (the arithmetic-geometric mean) and 16.10
-//! (negative parameters); NIST Digital Library of Mathematical Functions 22.20.
+//! References: M. Abramowitz, I. A. Stegun, *Handbook of Mathematical Functions*, Dover 1972, 16.4
+//! (the arithmetic-geometric mean) and 16.10 (negative parameters); NIST Digital Library of
+//! Mathematical Functions 22.20.
 //!
 //! ```text
 //! a_0 = 1, b_0 = sqrt(1 - m),  a_n = (a_(n-1) + b_(n-1))/2,  b_n = sqrt(a_(n-1) b_(n-1)),  c_n = (a_(n-1) - b_(n-1))/2
@@ -9,11 +11,12 @@
 //! m < 0, p = -m/(1 - m), v = u sqrt(1 - m):     sn(u, m) = sn(v, p)/(dn(v, p) sqrt(1 - m)), cn = cn(v, p)/dn(v, p), dn = 1/dn(v, p)
 //! ```
 
-/// Steps after which the means of `1` and `1e-8` agree to all digits, as do those of all larger numbers.
+/// Steps after which the means of `1` and `1e-8` agree to all digits, as do those of all larger
+/// numbers.
 const STEPS: usize = 8;
 
-/// `sn(u, m)`, `cn(u, m)` and `dn(u, m)`; NaN for `m > 1`. Close to `m = 1` all phases are served, where `ellpj` of the Cephes library holds
-/// below a quarter period alone.
+/// `sn(u, m)`, `cn(u, m)` and `dn(u, m)`; NaN for `m > 1`. Close to `m = 1` all phases are served,
+/// where `ellpj` of the Cephes library holds below a quarter period alone.
 pub(super) fn jacobi(u: f64, m: f64) -> [f64; 3] {
     if m < 0.0 {
         let scale = (1.0 - m).sqrt();
@@ -44,11 +47,15 @@ mod tests {
     use super::jacobi;
     use lindstedt_numeric::numeric::ode::quadrature::integrate_smooth;
 
-    /// `u = int_0^phi dt/sqrt(1 - m sin^2 t)`, `sn = sin phi` (NIST Digital Library of Mathematical Functions 22.15).
+    /// `u = int_0^phi dt/sqrt(1 - m sin^2 t)`, `sn = sin phi` (NIST Digital Library of Mathematical
+    /// Functions 22.15).
     #[test]
     fn they_invert_the_integral() {
-        for m in [-400.0, -3.0, -0.5, 0.0, 1e-12, 0.3, 0.5, 0.9, 0.99, 0.999_999] {
-            // Near m = 1 the integrand has a narrow peak at pi/2, over which the quadrature does not come.
+        for m in [
+            -400.0, -3.0, -0.5, 0.0, 1e-12, 0.3, 0.5, 0.9, 0.99, 0.999_999,
+        ] {
+            // Near m = 1 the integrand has a narrow peak at pi/2, over which the quadrature does
+            // not come.
             let far = if m < 0.999 { vec![4.0] } else { vec![] };
             for phi in [-0.7_f64, 0.2, 1.0, 1.5].into_iter().chain(far) {
                 let rate = |t: f64| (1.0 - m * t.sin().powi(2)).sqrt().recip();
@@ -76,6 +83,9 @@ mod tests {
         }
         assert_eq!(sn, 0.8_f64.tanh());
         assert!(jacobi(0.8, 1.5).iter().all(|value| value.is_nan()));
-        assert!(jacobi(f64::NAN, 0.5).iter().all(|value| value.is_nan()) && jacobi(0.5, f64::NAN)[0].is_nan());
+        assert!(
+            jacobi(f64::NAN, 0.5).iter().all(|value| value.is_nan())
+                && jacobi(0.5, f64::NAN)[0].is_nan()
+        );
     }
 }

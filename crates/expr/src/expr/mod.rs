@@ -1,17 +1,24 @@
 //! Expressions: what an equation of motion and a printed formula are made of.
 //!
-//! In come numbers, symbols and text; out goes an [`Expr`], an immutable tree that is cheap to clone and always in *one
-//! normal form*, so that two expressions built in different ways compare equal whenever the rules below can tell:
+//! In come numbers, symbols and text; out goes an [`Expr`], an immutable tree that is cheap to
+//! clone and always in *one normal form*, so that two expressions built in different ways compare
+//! equal whenever the rules below can tell:
 //!
-//! - sums and products are flat and sorted; like terms and equal bases are merged: `2*x + 3*x = 5*x`, `x*x = x^2`;
-//! - numbers are exact fractions and are folded wherever the result is one: `4^(1/2) = 2`, `sqrt(8) = 2*sqrt(2)`;
-//! - `(a*b)^n = a^n*b^n` and `(u^a)^n = u^(a*n)` for whole `n` alone: `(x^2)^(1/2)` is |x| and stays as it is;
-//! - a number times a sum is distributed, and a sum that is a factor or a base has whole coefficients without common
-//!   divisor, the first one positive: `z*(2 - 4*x) = 2*z*(1 - 2*x)`; products of sums wait for [`Expr::expand`];
+//! - sums and products are flat and sorted; like terms and equal bases are merged:
+//!   `2*x + 3*x = 5*x`, `x*x = x^2`;
+//! - numbers are exact fractions and are folded wherever the result is one: `4^(1/2) = 2`,
+//!   `sqrt(8) = 2*sqrt(2)`;
+//! - `(a*b)^n = a^n*b^n` and `(u^a)^n = u^(a*n)` for whole `n` alone: `(x^2)^(1/2)` is |x| and
+//!   stays as it is;
+//! - a number times a sum is distributed, and a sum that is a factor or a base has whole
+//!   coefficients without common divisor, the first one positive: `z*(2 - 4*x) = 2*z*(1 - 2*x)`;
+//!   products of sums wait for [`Expr::expand`];
 //! - `u^(p/q)` with `q` odd is the real root: `(-8)^(1/3) = -2`;
-//! - a point where the original is undefined may become defined (`x/x = 1`), never the other way round.
+//! - a point where the original is undefined may become defined (`x/x = 1`), never the other way
+//!   round.
 //!
-//! What has no value (`1/0`, `log(0)`, `0^0`, `sqrt(-1)`) is an [`ExprError`], not a silent infinity.
+//! What has no value (`1/0`, `log(0)`, `0^0`, `sqrt(-1)`) is an [`ExprError`], not a silent
+//! infinity.
 //!
 //! ```
 //! # use lindstedt_expr as lindstedt;
@@ -22,11 +29,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The parts: [`parse_expression`] and [`parse_equation`] read text, `Display` prints text that reads back to the same
-//! tree, [`Expr::differentiate`] and [`Expr::substitute`] are the calculus, [`Expr::evaluate`] and [`CompiledFunction`]
-//! give numbers. A new function such as `sech` is one entry in the table of [`Function`].
+//! The parts: [`parse_expression`] and [`parse_equation`] read text, `Display` prints text that
+//! reads back to the same tree, [`Expr::differentiate`] and [`Expr::substitute`] are the calculus,
+//! [`Expr::evaluate`] and [`CompiledFunction`] give numbers. A new function such as `sech` is one
+//! entry in the table of [`Function`].
 //!
-//! No walk over a tree recurses: each is a [`fold`](Expr::fold), so the depth of a tree costs memory and not the stack.
+//! No walk over a tree recurses: each is a [`fold`](Expr::fold), so the depth of a tree costs
+//! memory and not the stack.
 
 mod calculus;
 mod evaluate;
@@ -67,7 +76,8 @@ pub use typed::{Quotation, Typed};
 pub use crate::symbol::letters::{InForce, Letters};
 pub use crate::symbol::{fresh, fresh_stem, phase_beside};
 
-/// The largest numerator or denominator of an exponent that [`Expr::power`] accepts on anything but a number.
+/// The largest numerator or denominator of an exponent that [`Expr::power`] accepts on anything but
+/// a number.
 pub const LARGEST_EXPONENT: u32 = 10_000;
 
 /// The number of products after which [`Expr::expand`] gives up.
@@ -77,8 +87,8 @@ pub const EXPANSION_LIMIT: usize = 100_000;
 #[derive(Clone)]
 pub struct Expr(Arc<Inner>);
 
-/// One node of the tree. Match on [`Expr::node`] to read; build through [`Expr`] alone, which keeps the promises
-/// written on the variants.
+/// One node of the tree. Match on [`Expr::node`] to read; build through [`Expr`] alone, which keeps
+/// the promises written on the variants.
 #[derive(Clone)]
 pub enum Node {
     /// An exact fraction.
@@ -87,15 +97,17 @@ pub enum Node {
     Pi,
     /// A parameter, coordinate or derivative: `eps`, `x`, `x'`.
     Symbol(Symbol),
-    /// At least two terms, none a sum or zero, at most one a number, no two alike up to a numeric factor; in the order
-    /// in which they print.
+    /// At least two terms, none a sum or zero, at most one a number, no two alike up to a numeric
+    /// factor; in the order in which they print.
     Sum(Vec<Expr>),
-    /// A coefficient, not zero, and at least one factor (at least two where the coefficient is one). No factor is a
-    /// number or a product, no two have the same base, a sum among them is primitive, and a single sum never stands
-    /// beside a coefficient. In the order in which they print.
+    /// A coefficient, not zero, and at least one factor (at least two where the coefficient is
+    /// one). No factor is a number or a product, no two have the same base, a sum among them is
+    /// primitive, and a single sum never stands beside a coefficient. In the order in which they
+    /// print.
     Product(Rational, Vec<Expr>),
-    /// Base and exponent. The exponent is neither 0 nor 1. A whole exponent stands on a symbol, pi, a function or a
-    /// primitive sum; a number as base is a whole number above 1 to a power between 0 and 1, or to a symbolic power.
+    /// Base and exponent. The exponent is neither 0 nor 1. A whole exponent stands on a symbol, pi,
+    /// a function or a primitive sum; a number as base is a whole number above 1 to a power between
+    /// 0 and 1, or to a symbolic power.
     Power(Expr, Expr),
     /// A function of the table with as many arguments as it takes.
     Function(Function, Vec<Expr>),
@@ -177,7 +189,9 @@ impl Expr {
     pub fn power(base: &Self, exponent: &Self) -> Result<Self, ExprError> {
         let result = normal::power(base, exponent)?;
         match normal::has_large_exponent(&result) {
-            true => Err(ExprError::ExponentTooLarge(print::power_in_message(base, exponent))),
+            true => Err(ExprError::ExponentTooLarge(print::power_in_message(
+                base, exponent,
+            ))),
             false => Ok(result),
         }
     }
@@ -193,15 +207,20 @@ impl Expr {
     /// The denominator is zero.
     pub fn divide(numerator: &Self, denominator: &Self) -> Result<Self, ExprError> {
         if denominator.is_zero() {
-            return Err(ExprError::DivisionByZero(format!("{}/0", print::in_message(numerator))));
+            return Err(ExprError::DivisionByZero(format!(
+                "{}/0",
+                print::in_message(numerator)
+            )));
         }
         Ok(numerator * normal::power(denominator, &Self::from(-1))?)
     }
 
-    /// The function of these arguments, simplified where the table knows an exact value or a parity.
+    /// The function of these arguments, simplified where the table knows an exact value or a
+    /// parity.
     ///
     /// # Errors
-    /// The wrong number of arguments, or arguments at which the function has no value, as in `log(0)`.
+    /// The wrong number of arguments, or arguments at which the function has no value, as in
+    /// `log(0)`.
     pub fn function(function: Function, arguments: Vec<Self>) -> Result<Self, ExprError> {
         function.apply(arguments)
     }
@@ -221,8 +240,8 @@ impl Expr {
         Self::function(Function::Cos, vec![self.clone()])
     }
 
-    /// The same kind of node over other children, in the order of [`Expr::children`], put into normal form again.
-    /// A leaf is returned as it is.
+    /// The same kind of node over other children, in the order of [`Expr::children`], put into
+    /// normal form again. A leaf is returned as it is.
     ///
     /// # Errors
     /// Those of [`Expr::power`] and [`Expr::function`].
@@ -230,7 +249,9 @@ impl Expr {
         match (self.node(), children) {
             (Node::Number(_) | Node::Pi | Node::Symbol(_), _) => Ok(self.clone()),
             (Node::Sum(_), _) => Ok(Self::sum(children.iter().cloned())),
-            (Node::Product(coefficient, _), _) => Ok(normal::scaled_product(coefficient.clone(), children)),
+            (Node::Product(coefficient, _), _) => {
+                Ok(normal::scaled_product(coefficient.clone(), children))
+            }
             (Node::Power(..), [base, exponent]) => Self::power(base, exponent),
             (Node::Power(..), _) => Err(ExprError::WrongArguments {
                 function: "^",
@@ -248,7 +269,9 @@ impl Expr {
     pub fn with_numbers(&self, change: &dyn Fn(&Rational) -> Rational) -> Result<Self, ExprError> {
         self.fold(|expr, children: &[Self]| match expr.node() {
             Node::Number(number) => Ok(Self::number(change(number))),
-            Node::Product(coefficient, _) => Ok(normal::scaled_product(change(coefficient), children)),
+            Node::Product(coefficient, _) => {
+                Ok(normal::scaled_product(change(coefficient), children))
+            }
             _ => expr.with_children(children),
         })
     }
@@ -297,7 +320,8 @@ impl Expr {
         }
     }
 
-    /// The numeric coefficient and the other factors: `-x/6` gives -1/6 and `[x]`, a number itself and `[]`.
+    /// The numeric coefficient and the other factors: `-x/6` gives -1/6 and `[x]`, a number itself
+    /// and `[]`.
     pub fn factors(&self) -> (Rational, &[Self]) {
         match self.node() {
             Node::Number(value) => (value.clone(), &[]),
@@ -329,7 +353,8 @@ impl Expr {
 
     /// Does the symbol occur?
     pub fn contains(&self, symbol: Symbol) -> bool {
-        self.unique_nodes().any(|expr| expr.as_symbol() == Some(symbol))
+        self.unique_nodes()
+            .any(|expr| expr.as_symbol() == Some(symbol))
     }
 
     /// Does the function occur?
@@ -338,12 +363,16 @@ impl Expr {
             .any(|expr| matches!(expr.node(), Node::Function(found, _) if *found == function))
     }
 
-    /// Computes a value for the whole tree from the bottom up: `step` gets each node with the values of its children.
-    /// Without recursion, and once for a node that occurs in several places.
+    /// Computes a value for the whole tree from the bottom up: `step` gets each node with the
+    /// values of its children. Without recursion, and once for a node that occurs in several
+    /// places.
     ///
     /// # Errors
     /// The first error of `step`.
-    pub fn fold<T: Clone, E>(&self, mut step: impl FnMut(&Self, &[T]) -> Result<T, E>) -> Result<T, E> {
+    pub fn fold<T: Clone, E>(
+        &self,
+        mut step: impl FnMut(&Self, &[T]) -> Result<T, E>,
+    ) -> Result<T, E> {
         let mut done: HashMap<*const Inner, T> = HashMap::new();
         let mut open = vec![(self, false)];
         let mut values = Vec::new();
@@ -357,7 +386,10 @@ impl Expr {
                 continue;
             }
             values.clear();
-            values.extend(expr.children().filter_map(|child| done.get(&child.address()).cloned()));
+            values.extend(
+                expr.children()
+                    .filter_map(|child| done.get(&child.address()).cloned()),
+            );
             let value = step(expr, &values)?;
             if open.is_empty() {
                 return Ok(value);
@@ -430,7 +462,8 @@ impl Expr {
         }))
     }
 
-    /// Constant between jumps: built from numbers, `H` and `sgn` alone. Zero there means zero on a whole interval.
+    /// Constant between jumps: built from numbers, `H` and `sgn` alone. Zero there means zero on a
+    /// whole interval.
     fn is_stepwise(&self) -> bool {
         self.0.stepwise
     }
@@ -456,13 +489,16 @@ struct Inner {
     stepwise: bool,
 }
 
-/// Children are handed to a list instead of being dropped in place: the depth of a tree never meets the stack.
+/// Children are handed to a list instead of being dropped in place: the depth of a tree never meets
+/// the stack.
 impl Drop for Inner {
     fn drop(&mut self) {
         let mut open = Vec::new();
         let release = |node: &mut Node, open: &mut Vec<Expr>| match node {
             Node::Number(_) | Node::Pi | Node::Symbol(_) => {}
-            Node::Sum(children) | Node::Product(_, children) | Node::Function(_, children) => open.append(children),
+            Node::Sum(children) | Node::Product(_, children) | Node::Function(_, children) => {
+                open.append(children)
+            }
             Node::Power(..) => {
                 if let Node::Power(base, exponent) = std::mem::replace(node, Node::Pi) {
                     open.extend([base, exponent]);
@@ -492,7 +528,8 @@ impl Hash for Expr {
     }
 }
 
-/// A total order of trees, for maps and sets. It is not the order of values, nor the order of printing.
+/// A total order of trees, for maps and sets. It is not the order of values, nor the order of
+/// printing.
 impl Ord for Expr {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
         order::compare_structure(self, other)
@@ -572,9 +609,15 @@ macro_rules! operator {
     };
 }
 
-operator!(Add, add, |left, right| Expr::sum([left.clone(), right.clone()]));
+operator!(Add, add, |left, right| Expr::sum([
+    left.clone(),
+    right.clone()
+]));
 operator!(Sub, sub, |left, right| Expr::sum([left.clone(), -right]));
-operator!(Mul, mul, |left, right| Expr::product([left.clone(), right.clone()]));
+operator!(Mul, mul, |left, right| Expr::product([
+    left.clone(),
+    right.clone()
+]));
 
 impl std::ops::Neg for &Expr {
     type Output = Expr;
@@ -654,7 +697,10 @@ mod tests {
         assert_eq!(expr.to_string().len(), 5 * depth + 1);
         assert_eq!(expr.expand().unwrap(), expr);
         assert_ne!(expr.substitute(x, &Expr::symbol("y")).unwrap(), expr);
-        assert_eq!(expr.differentiate(x).unwrap_err(), ExprError::TooManyTerms(300_000));
+        assert_eq!(
+            expr.differentiate(x).unwrap_err(),
+            ExprError::TooManyTerms(300_000)
+        );
         // cos repeated without end converges to the solution of cos(u) = u.
         let value = expr.evaluate(&BTreeMap::from([(x, 1.0)])).unwrap();
         assert!((value - value.cos()).abs() < 1e-15);

@@ -1,7 +1,8 @@
 //! The normal form: the rules by which sums, products and powers are built.
 //!
-//! In come expressions that are each in normal form, out goes one; the rules are those listed in [`super`]. Each looks
-//! at the nodes it joins and never further down, so building costs what is joined and not what lies below.
+//! In come expressions that are each in normal form, out goes one; the rules are those listed in
+//! [`super`]. Each looks at the nodes it joins and never further down, so building costs what is
+//! joined and not what lies below.
 
 use num_integer::Integer as _;
 use num_traits::{One, Signed, ToPrimitive, Zero};
@@ -36,9 +37,9 @@ fn merged(constant: Rational, mut parts: Vec<Part>) -> Expr {
             merged.push(only.term.clone());
             continue;
         }
-        let coefficient = group
-            .iter()
-            .fold(Rational::zero(), |total, part| number::add(&total, &part.coefficient));
+        let coefficient = group.iter().fold(Rational::zero(), |total, part| {
+            number::add(&total, &part.coefficient)
+        });
         if let Some(part) = group.first()
             && !coefficient.is_zero()
         {
@@ -82,7 +83,9 @@ impl Part {
 fn sort_by_hash<T>(items: &mut [T], expr: impl Fn(&T) -> &Expr) {
     items.sort_by(|a, b| {
         let (a, b) = (expr(a), expr(b));
-        a.0.hash.cmp(&b.0.hash).then_with(|| order::compare_structure(a, b))
+        a.0.hash
+            .cmp(&b.0.hash)
+            .then_with(|| order::compare_structure(a, b))
     });
 }
 
@@ -141,7 +144,11 @@ impl Gathered {
 
     fn push(&mut self, whole: Expr) {
         let (base, exponent) = whole.base_and_exponent();
-        self.powers.push(Factor { base, exponent, whole });
+        self.powers.push(Factor {
+            base,
+            exponent,
+            whole,
+        });
     }
 
     fn finish(mut self) -> Expr {
@@ -155,15 +162,20 @@ impl Gathered {
             for group in powers.chunk_by(|a, b| a.base == b.base) {
                 match merge(group) {
                     Some(merged) => {
-                        settled &= matches!(merged.node(), Node::Symbol(_) | Node::Pi | Node::Function(..))
-                            || matches!(merged.node(), Node::Power(base, _) if *base == group[0].base)
+                        settled &= matches!(
+                            merged.node(),
+                            Node::Symbol(_) | Node::Pi | Node::Function(..)
+                        ) || matches!(merged.node(), Node::Power(base, _) if *base == group[0].base)
                             || merged.as_number().is_some();
                         self.multiply(&merged);
                     }
-                    None => group.iter().for_each(|factor| self.push(factor.whole.clone())),
+                    None => group
+                        .iter()
+                        .for_each(|factor| self.push(factor.whole.clone())),
                 }
             }
-            // A merged power may have fallen apart into factors whose bases stand elsewhere in the product.
+            // A merged power may have fallen apart into factors whose bases stand elsewhere in the
+            // product.
             if settled {
                 break;
             }
@@ -174,12 +186,16 @@ impl Gathered {
     }
 }
 
-/// One power for factors of one base, or `None` where they stay as they are: a single factor, or a power of a number
-/// that would be too long to write out.
+/// One power for factors of one base, or `None` where they stay as they are: a single factor, or a
+/// power of a number that would be too long to write out.
 fn merge(group: &[Factor]) -> Option<Expr> {
     match group {
         [] | [_] => None,
-        [first, ..] => power(&first.base, &sum(group.iter().map(|factor| factor.exponent.clone()))).ok(),
+        [first, ..] => power(
+            &first.base,
+            &sum(group.iter().map(|factor| factor.exponent.clone())),
+        )
+        .ok(),
     }
 }
 
@@ -192,7 +208,10 @@ fn scaled(coefficient: Rational, factors: &[Expr]) -> Expr {
         [only] => match only.node() {
             // Multiplying every term by one number keeps them apart and in order.
             Node::Sum(terms) => Expr::from_node(Node::Sum(
-                terms.iter().map(|term| rescaled(term, &coefficient)).collect(),
+                terms
+                    .iter()
+                    .map(|term| rescaled(term, &coefficient))
+                    .collect(),
             )),
             _ => Expr::from_node(Node::Product(coefficient, factors.to_vec())),
         },
@@ -205,7 +224,8 @@ fn rescaled(term: &Expr, by: &Rational) -> Expr {
     scaled(number::multiply(&coefficient, by), factors)
 }
 
-/// The greatest number whose removal leaves whole coefficients without common divisor, with the sign of the first.
+/// The greatest number whose removal leaves whole coefficients without common divisor, with the
+/// sign of the first.
 fn content(terms: &[Expr]) -> Rational {
     let mut divisor = Integer::zero();
     let mut multiple = Integer::one();
@@ -255,7 +275,10 @@ pub(super) fn power(base: &Expr, exponent: &Expr) -> Result<Expr, ExprError> {
             Node::Number(value) => return number_power(value, &number),
             Node::Product(coefficient, factors) if number.is_integer() => {
                 let coefficient = number_power(coefficient, &number)?;
-                let powers: Result<Vec<Expr>, _> = factors.iter().map(|factor| power(factor, &exponent)).collect();
+                let powers: Result<Vec<Expr>, _> = factors
+                    .iter()
+                    .map(|factor| power(factor, &exponent))
+                    .collect();
                 return Ok(product(powers?.into_iter().chain([coefficient])));
             }
             Node::Product(coefficient, _) => return root_of_scaled(&base, coefficient, &number),
@@ -265,7 +288,9 @@ pub(super) fn power(base: &Expr, exponent: &Expr) -> Result<Expr, ExprError> {
                 return Ok(product([number_power(&content, &number)?, primitive]));
             }
             Node::Sum(terms) => return root_of_scaled(&base, &content(terms), &number),
-            Node::Power(inner, first) if number.is_integer() || inner.as_number().is_some_and(Signed::is_positive) => {
+            Node::Power(inner, first)
+                if number.is_integer() || inner.as_number().is_some_and(Signed::is_positive) =>
+            {
                 (inner.clone(), first * &exponent)
             }
             _ => return Ok(Expr::from_node(Node::Power(base, exponent))),
@@ -287,7 +312,9 @@ pub(super) fn has_large_exponent(expr: &Expr) -> bool {
 
 fn symbolic_power(base: &Expr, exponent: &Expr) -> Result<Expr, ExprError> {
     if base.is_zero() {
-        return Err(ExprError::Undefined(print::power_in_message(base, exponent)));
+        return Err(ExprError::Undefined(print::power_in_message(
+            base, exponent,
+        )));
     }
     if base.is_one() {
         return Ok(Expr::one());
@@ -311,7 +338,10 @@ fn root_of_scaled(base: &Expr, factor: &Rational, exponent: &Rational) -> Result
             None => inside *= part,
         }
     }
-    let rest = scaled_product(number::multiply(&inside, &factor.recip()), std::slice::from_ref(base));
+    let rest = scaled_product(
+        number::multiply(&inside, &factor.recip()),
+        std::slice::from_ref(base),
+    );
     let exponent = Expr::number(exponent.clone());
     Ok(match outside.is_one() {
         true => Expr::from_node(Node::Power(base.clone(), exponent)),
@@ -319,16 +349,23 @@ fn root_of_scaled(base: &Expr, factor: &Rational, exponent: &Rational) -> Result
     })
 }
 
-/// A number to an exact power: a number if there is one, otherwise a number times roots of whole numbers.
+/// A number to an exact power: a number if there is one, otherwise a number times roots of whole
+/// numbers.
 fn number_power(base: &Rational, exponent: &Rational) -> Result<Expr, ExprError> {
-    let message = || print::power_in_message(&Expr::number(base.clone()), &Expr::number(exponent.clone()));
+    let message =
+        || print::power_in_message(&Expr::number(base.clone()), &Expr::number(exponent.clone()));
     if base.is_zero() && !exponent.is_positive() {
         return Err(ExprError::DivisionByZero(message()));
     }
     if let Some(value) = rational::power(base, exponent) {
         return Ok(Expr::number(value));
     }
-    let within = |integer: &Integer| integer.abs().to_u32().is_some_and(|size| size <= LARGEST_EXPONENT);
+    let within = |integer: &Integer| {
+        integer
+            .abs()
+            .to_u32()
+            .is_some_and(|size| size <= LARGEST_EXPONENT)
+    };
     if exponent.is_integer() || !within(&exponent.floor().to_integer()) {
         return Err(ExprError::NumberTooLarge(message()));
     }
@@ -340,22 +377,31 @@ fn number_power(base: &Rational, exponent: &Rational) -> Result<Expr, ExprError>
     }
     // A negative base has an odd root here, and the sign comes back if the numerator is odd too.
     let negative = base.is_negative() && exponent.numer().is_odd();
-    let mut coefficient = if negative { -Rational::one() } else { Rational::one() };
+    let mut coefficient = if negative {
+        -Rational::one()
+    } else {
+        Rational::one()
+    };
     let mut roots = Vec::new();
     for (part, exponent) in [
         (base.numer().abs(), exponent.clone()),
         (base.denom().clone(), -exponent),
     ] {
-        let (outside, root) = integer_root(part, exponent).ok_or_else(|| ExprError::NumberTooLarge(message()))?;
+        let (outside, root) =
+            integer_root(part, exponent).ok_or_else(|| ExprError::NumberTooLarge(message()))?;
         coefficient *= outside;
         roots.extend(root);
     }
-    Ok(product(roots.into_iter().chain([Expr::number(coefficient)])))
+    Ok(product(
+        roots.into_iter().chain([Expr::number(coefficient)]),
+    ))
 }
 
-/// `base^exponent` of a whole number above zero as a number times a root `m^f`, `m` whole and 0 < f < 1.
+/// `base^exponent` of a whole number above zero as a number times a root `m^f`, `m` whole and 0 < f
+/// < 1.
 fn integer_root(base: Integer, exponent: Rational) -> Option<(Rational, Option<Expr>)> {
-    /// In bits; the roots of longer numbers stay as they are, because looking for divisors takes too long.
+    /// In bits; the roots of longer numbers stay as they are, because looking for divisors takes
+    /// too long.
     const LONGEST: u64 = 4_096;
     let short = base.bits() <= LONGEST;
     let (base, exponent) = if short {
@@ -380,7 +426,8 @@ fn integer_root(base: Integer, exponent: Rational) -> Option<(Rational, Option<E
             let block = Integer::from(divisor).pow(degree);
             while inside.is_multiple_of(&block) {
                 inside /= &block;
-                outside *= Rational::from_integer(Integer::from(divisor).pow(broken.numer().to_u32()?));
+                outside *=
+                    Rational::from_integer(Integer::from(divisor).pow(broken.numer().to_u32()?));
             }
         }
     }
@@ -401,7 +448,9 @@ fn integer_root(base: Integer, exponent: Rational) -> Option<(Rational, Option<E
 /// The smallest base: `4^(1/3) = 2^(2/3)`, so that equal roots look equal.
 fn as_perfect_power(base: Integer, exponent: Rational) -> (Integer, Rational) {
     /// A power of a larger prime is left as it is.
-    const PRIMES: [u32; 18] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61];
+    const PRIMES: [u32; 18] = [
+        2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61,
+    ];
     let (mut base, mut exponent) = (Rational::from_integer(base), exponent);
     for degree in PRIMES {
         let fraction = Rational::new(1.into(), degree.into());
@@ -443,7 +492,10 @@ mod tests {
             ("2*3*x/6", "x"),
             ("A^2*eps*3/4", "3*eps*A^2/4"),
             ("x'*zeta*2", "2*zeta*x'"),
-            ("H(x - xc)*(x - xc)^(3/2)*gamma", "gamma*(x - xc)^(3/2)*H(x - xc)"),
+            (
+                "H(x - xc)*(x - xc)^(3/2)*gamma",
+                "gamma*(x - xc)^(3/2)*H(x - xc)",
+            ),
             ("z*(2 - 4*x)", "2*z*(1 - 2*x)"),
             ("z*(x/2 - y/3)", "z*(3*x - 2*y)/6"),
             ("2*(1 - 2*x)", "2 - 4*x"),
@@ -490,11 +542,17 @@ mod tests {
             ),
             ("sin(pi/2) + cos(-pi) + 4*atan(1) + 2*acos(0)", "2*pi"),
             ("asin(-1)", "-pi/2"),
-            ("abs(-3/2) + sgn(-2) + H(0) + H(1) + max(1, 2) + min(1/2, 1/3)", "23/6"),
+            (
+                "abs(-3/2) + sgn(-2) + H(0) + H(1) + max(1, 2) + min(1/2, 1/3)",
+                "23/6",
+            ),
             ("max(x, y) - max(y, x)", "0"),
             ("max(x, x)", "x"),
         ] {
-            let (built, direct) = (parse_expression(text).unwrap(), parse_expression(expected).unwrap());
+            let (built, direct) = (
+                parse_expression(text).unwrap(),
+                parse_expression(expected).unwrap(),
+            );
             assert_eq!(built, direct, "{text}");
             assert_eq!(built.to_string(), expected, "{text}");
         }
@@ -543,7 +601,10 @@ mod tests {
             Expr::divide(&x, &zero).unwrap_err(),
             ExprError::DivisionByZero("x/0".into())
         );
-        assert_eq!(Expr::power(&zero, &x).unwrap_err(), ExprError::Undefined("0^x".into()));
+        assert_eq!(
+            Expr::power(&zero, &x).unwrap_err(),
+            ExprError::Undefined("0^x".into())
+        );
         assert_eq!(
             x.integer_power(10_001).unwrap_err(),
             ExprError::ExponentTooLarge("x^10001".into())

@@ -1,9 +1,10 @@
 //! Sums, products and comparison of exact fractions whose lengths differ widely.
 //!
-//! The library of fractions takes the greatest common divisor bit by bit, also of a million bits and 1, and compares by
-//! recursion along continued fractions. Here the divisor comes from Euclid's remainders, which is one cheap step where
-//! one number is short, and none is taken where the result is in lowest terms already (Knuth, The Art of Computer
-//! Programming, volume 2, section 4.5.1).
+//! The library of fractions takes the greatest common divisor bit by bit, also of a million bits
+//! and 1, and compares by recursion along continued fractions. Here the divisor comes from Euclid's
+//! remainders, which is one cheap step where one number is short, and none is taken where the
+//! result is in lowest terms already (Knuth, The Art of Computer Programming, volume 2,
+//! section 4.5.1).
 
 use std::cmp::Ordering;
 
@@ -95,7 +96,8 @@ mod tests {
         let numbers = numbers.map(|(numerator, denominator)| ratio(numerator, denominator));
         for a in &numbers {
             for b in &numbers {
-                // Raw parts: the library's own equality would forgive a fraction that is not in lowest terms.
+                // Raw parts: the library's own equality would forgive a fraction that is not in
+                // lowest terms.
                 let parts = |value: &Rational| (value.numer().clone(), value.denom().clone());
                 assert_eq!(parts(&add(a, b)), parts(&(a + b)), "{a} + {b}");
                 assert_eq!(parts(&multiply(a, b)), parts(&(a * b)), "{a} * {b}");

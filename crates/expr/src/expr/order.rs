@@ -1,10 +1,11 @@
 //! The order in which terms and factors print, and the structural order behind equality.
 //!
-//! - Terms of a sum: those with an acceleration first, those with functions last, in between by ascending total degree,
-//!   at equal degree coordinates before amplitudes before parameters: `x'' + 2*zeta*x' + sin(x)`, `1 - A^2/8`,
-//!   `x - xc`.
-//! - Factors of a product: roots of numbers, pi, parameters in alphabetical order, amplitudes, coordinates, then powers
-//!   of sums and functions: `3*eps*A^2/4`, `gamma*(x - xc)^(3/2)*H(x - xc)`.
+//! - Terms of a sum: those with an acceleration first, those with functions last, in between by
+//!   ascending total degree, at equal degree coordinates before amplitudes before parameters:
+//!   `x'' + 2*zeta*x' + sin(x)`, `1 - A^2/8`, `x - xc`.
+//! - Factors of a product: roots of numbers, pi, parameters in alphabetical order, amplitudes,
+//!   coordinates, then powers of sums and functions: `3*eps*A^2/4`,
+//!   `gamma*(x - xc)^(3/2)*H(x - xc)`.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::HashSet;
@@ -63,7 +64,12 @@ fn symbol_class(symbol: Symbol) -> Class {
 }
 
 fn compare_names(a: Symbol, b: Symbol) -> Ordering {
-    let folded = |symbol: Symbol| symbol.name().chars().map(|letter| letter.to_ascii_lowercase());
+    let folded = |symbol: Symbol| {
+        symbol
+            .name()
+            .chars()
+            .map(|letter| letter.to_ascii_lowercase())
+    };
     folded(a).cmp(folded(b)).then_with(|| a.cmp(&b))
 }
 
@@ -90,7 +96,8 @@ impl TermKey {
             };
             match (base.node(), exponent) {
                 (Node::Symbol(symbol), Some(exponent)) => {
-                    // What stands below the line counts neither way: `omega0 + A^2/omega0 + A^4/omega0^3`.
+                    // What stands below the line counts neither way:
+                    // `omega0 + A^2/omega0 + A^4/omega0^3`.
                     key.degree += exponent.max(0.0);
                     key.monomial.push((*symbol, exponent));
                 }
@@ -156,7 +163,8 @@ impl Eq for TermKey {}
 
 /// A total order of trees by kind, size and content, without recursion.
 pub(super) fn compare_structure(a: &Expr, b: &Expr) -> Ordering {
-    /// After this many steps pairs already found equal are remembered, for trees that share much of themselves.
+    /// After this many steps pairs already found equal are remembered, for trees that share much of
+    /// themselves.
     const PATIENCE: usize = 1_000;
     if a.address() == b.address() {
         return Ordering::Equal;
@@ -172,17 +180,21 @@ pub(super) fn compare_structure(a: &Expr, b: &Expr) -> Ordering {
         if steps > PATIENCE && a.0.hash == b.0.hash && !seen.insert((a.address(), b.address())) {
             continue;
         }
-        // The size decides first among trees of one kind: deep trees that differ are seldom walked through.
+        // The size decides first among trees of one kind: deep trees that differ are seldom walked
+        // through.
         let order = match (a.node(), b.node()) {
             _ if rank(a.node()) != rank(b.node()) => rank(a.node()).cmp(&rank(b.node())),
             _ if a.0.size != b.0.size => a.0.size.cmp(&b.0.size),
             (Node::Number(a), Node::Number(b)) => number::compare(a, b),
             (Node::Symbol(a), Node::Symbol(b)) => a.cmp(b),
             (Node::Sum(a), Node::Sum(b)) => a.len().cmp(&b.len()),
-            (Node::Product(first, a), Node::Product(second, b)) => {
-                a.len().cmp(&b.len()).then_with(|| number::compare(first, second))
+            (Node::Product(first, a), Node::Product(second, b)) => a
+                .len()
+                .cmp(&b.len())
+                .then_with(|| number::compare(first, second)),
+            (Node::Function(first, a), Node::Function(second, b)) => {
+                first.cmp(second).then(a.len().cmp(&b.len()))
             }
-            (Node::Function(first, a), Node::Function(second, b)) => first.cmp(second).then(a.len().cmp(&b.len())),
             _ => Ordering::Equal,
         };
         if order.is_ne() {

@@ -1,5 +1,5 @@
-//! Whether a value is missing because it is beyond double precision, or because there is none: `exp(x)` at `x = 1e3` overflows,
-//! `1/x` at `x = 0` is a pole.
+//! Whether a value is missing because it is beyond double precision, or because there is none:
+//! `exp(x)` at `x = 1e3` overflows, `1/x` at `x = 0` is a pole.
 
 use std::collections::BTreeMap;
 use std::convert::Infallible;
@@ -18,14 +18,20 @@ enum Found {
 }
 
 impl Expr {
-    /// In words, the innermost part whose value at this point is larger than any double though its arguments are not, where that is why
-    /// the whole has none. At a pole, and where there is no real value, there is no such part.
+    /// In words, the innermost part whose value at this point is larger than any double though its
+    /// arguments are not, where that is why the whole has none. At a pole, and where there is no
+    /// real value, there is no such part.
     pub fn overflow(&self, values: &BTreeMap<Symbol, f64>) -> Option<String> {
-        let (names, numbers): (Vec<Symbol>, Vec<f64>) = values.iter().map(|(name, value)| (*name, *value)).unzip();
-        let value = |part: &Self| CompiledFunction::new(part, &names).map_or(f64::NAN, |part| part.call(&numbers));
+        let (names, numbers): (Vec<Symbol>, Vec<f64>) =
+            values.iter().map(|(name, value)| (*name, *value)).unzip();
+        let value = |part: &Self| {
+            CompiledFunction::new(part, &names).map_or(f64::NAN, |part| part.call(&numbers))
+        };
         let found = self.fold(|part, children: &[Found]| {
             let value = value(part);
-            let inner = children.iter().find(|child| !matches!(child, Found::Finite(_)));
+            let inner = children
+                .iter()
+                .find(|child| !matches!(child, Found::Finite(_)));
             Ok::<Found, Infallible>(match (value.is_finite(), inner) {
                 (true, _) => Found::Finite(value),
                 (false, Some(inner)) => inner.clone(),
@@ -40,7 +46,8 @@ impl Expr {
     }
 }
 
-/// Whether an infinite value of finite arguments is that of a pole: a small number to a negative power, or the logarithm of zero.
+/// Whether an infinite value of finite arguments is that of a pole: a small number to a negative
+/// power, or the logarithm of zero.
 fn is_pole(part: &Expr, children: &[Found]) -> bool {
     match (part.node(), children) {
         (Node::Power(..), [Found::Finite(base), ..]) => base.abs() < 1.0,

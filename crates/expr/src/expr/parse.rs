@@ -11,9 +11,9 @@
 //! number   = digits [ "." digits ] [ "e" [sign] digits ]       exact: 0.323 is 323/1000
 //! ```
 //!
-//! Every error names the place and, where it can, the right spelling. Whatever the text is, reading it ends quickly:
-//! its length, its nesting, the digits and exponents of its numbers and the work of bringing it into normal form are
-//! limited.
+//! Every error names the place and, where it can, the right spelling. Whatever the text is, reading
+//! it ends quickly: its length, its nesting, the digits and exponents of its numbers and the work
+//! of bringing it into normal form are limited.
 
 mod brackets;
 mod error;
@@ -35,10 +35,10 @@ pub use error::excerpt;
 use error::shortened;
 use lexer::{Kind, Token};
 
-/// Names of the amplitudes and the frequency in an answer. Where an equation has one of them for something of its own,
-/// `Oscillator::with_own_names_apart` keeps it apart before a formula is derived, and the
-/// answer writes another letter. `omega0` and `theta` are none of them: beside such names of an equation the answer writes `omega0_` and
-/// `phi`.
+/// Names of the amplitudes and the frequency in an answer. Where an equation has one of them for
+/// something of its own, `Oscillator::with_own_names_apart` keeps it apart before a formula is
+/// derived, and the answer writes another letter. `omega0` and `theta` are none of them: beside
+/// such names of an equation the answer writes `omega0_` and `phi`.
 pub const NAMES_OF_ANSWERS: [&str; 3] = ["A", "a", "omega"];
 
 /// Spellings of what is no number.
@@ -72,8 +72,9 @@ impl fmt::Display for Equation {
     }
 }
 
-/// Reads an expression. Every printed expression can be read, so the names of answers (`A`, `theta`, `omega`) and special
-/// functions (`J1(A)`) are allowed, and so are primes after longer names.
+/// Reads an expression. Every printed expression can be read, so the names of answers (`A`,
+/// `theta`, `omega`) and special functions (`J1(A)`) are allowed, and so are primes after longer
+/// names.
 ///
 /// # Errors
 /// See [`ParseError`].
@@ -102,7 +103,8 @@ pub fn parse_expression(text: &str) -> Result<Expr, ParseError> {
 /// Reads an equation of motion such as `x'' + x + eps*x^3 = 0`.
 ///
 /// # Errors
-/// See [`ParseError`]; also for a coordinate with one of the [`NAMES_OF_ANSWERS`], and for primes on more than a letter, a Greek one by name, with or without an index.
+/// See [`ParseError`]; also for a coordinate with one of the [`NAMES_OF_ANSWERS`], and for primes
+/// on more than a letter, a Greek one by name, with or without an index.
 ///
 /// ```
 /// # use lindstedt_expr as lindstedt;
@@ -134,7 +136,9 @@ pub fn parse_equation(text: &str) -> Result<Equation, ParseError> {
             coordinate,
             typed: Typed::new(text, terms),
         }),
-        Kind::Equals => Err(parser.error(parser.token().span(), "a second `=`", "an equation has one")),
+        Kind::Equals => {
+            Err(parser.error(parser.token().span(), "a second `=`", "an equation has one"))
+        }
         _ => Err(parser.unexpected()),
     }
 }
@@ -172,7 +176,8 @@ impl<'a> Parser<'a> {
         self.sum_of(&mut |_, _| ())
     }
 
-    /// A sum, each term of which is shown with the numbers of its first token, signs included, and of the one after its last.
+    /// A sum, each term of which is shown with the numbers of its first token, signs included, and
+    /// of the one after its last.
     fn sum_of(&mut self, show: &mut dyn FnMut(&Expr, Range<usize>)) -> Result<Expr, ParseError> {
         let start = self.token().start;
         let mut terms = Vec::new();
@@ -195,7 +200,11 @@ impl<'a> Parser<'a> {
     }
 
     /// One side of an equation, with its terms as they stand there.
-    fn side(&mut self, right: bool, coordinate: Symbol) -> Result<(Expr, Vec<TypedTerm>), ParseError> {
+    fn side(
+        &mut self,
+        right: bool,
+        coordinate: Symbol,
+    ) -> Result<(Expr, Vec<TypedTerm>), ParseError> {
         let mut shown: Vec<(Expr, Range<usize>)> = Vec::new();
         let sum = self.sum_of(&mut |term, tokens| shown.push((term.clone(), tokens)))?;
         let typed = brackets::typed_terms(self.text, &self.tokens, shown, right, coordinate);
@@ -342,9 +351,17 @@ impl<'a> Parser<'a> {
                 let primes = name.len() - bare.len();
                 if primes > 2 {
                     let help = format!("the highest derivative is `{bare}''`");
-                    return Err(self.error(token.span(), &format!("`{name}` has {primes} primes"), &help));
+                    return Err(self.error(
+                        token.span(),
+                        &format!("`{name}` has {primes} primes"),
+                        &help,
+                    ));
                 }
-                if primes > 0 && (bare == "pi" || bare == "t" || bare == "sqrt" || Function::from_name(bare).is_some())
+                if primes > 0
+                    && (bare == "pi"
+                        || bare == "t"
+                        || bare == "sqrt"
+                        || Function::from_name(bare).is_some())
                 {
                     return Err(self.error(
                         token.span(),
@@ -363,7 +380,11 @@ impl<'a> Parser<'a> {
         self.enter(open)?;
         if self.peek() == Kind::Close {
             let text = self.quoted(name.span());
-            return Err(self.error(name.start..self.token().end, &format!("{text} has no argument"), ""));
+            return Err(self.error(
+                name.start..self.token().end,
+                &format!("{text} has no argument"),
+                "",
+            ));
         }
         let mut arguments = vec![self.sum()?];
         while self.peek() == Kind::Comma {
@@ -393,12 +414,23 @@ impl<'a> Parser<'a> {
         let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
         let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
         if whole.len() + fraction.len() > MOST_DIGITS {
-            return Err(self.error(token.span(), &format!("a number of more than {MOST_DIGITS} digits"), ""));
+            return Err(self.error(
+                token.span(),
+                &format!("a number of more than {MOST_DIGITS} digits"),
+                "",
+            ));
         }
-        let size = exponent.trim_start_matches(['+', '-']).trim_start_matches('0');
-        let size = if size.is_empty() { Some(0) } else { size.parse().ok() };
+        let size = exponent
+            .trim_start_matches(['+', '-'])
+            .trim_start_matches('0');
+        let size = if size.is_empty() {
+            Some(0)
+        } else {
+            size.parse().ok()
+        };
         let Some(size) = size.filter(|size: &usize| *size <= LARGEST_DECIMAL_EXPONENT) else {
-            let message = format!("the exponent of this number is beyond {LARGEST_DECIMAL_EXPONENT}");
+            let message =
+                format!("the exponent of this number is beyond {LARGEST_DECIMAL_EXPONENT}");
             return Err(self.error(token.span(), &message, ""));
         };
         let digits = format!("0{whole}{fraction}")
@@ -443,12 +475,17 @@ impl<'a> Parser<'a> {
     fn enter(&mut self, token: Token) -> Result<(), ParseError> {
         self.depth += 1;
         match self.depth > DEEPEST {
-            true => Err(self.error(token.span(), &format!("nested more than {DEEPEST} deep"), "")),
+            true => Err(self.error(
+                token.span(),
+                &format!("nested more than {DEEPEST} deep"),
+                "",
+            )),
             false => Ok(()),
         }
     }
 
-    /// Counts the work of joining these expressions: their terms, and the length of the numbers among them.
+    /// Counts the work of joining these expressions: their terms, and the length of the numbers
+    /// among them.
     fn charge(&mut self, parts: &[Expr], start: usize) -> Result<(), ParseError> {
         /// Word operations on numbers that take about as long as one term.
         const BITS: u64 = 32_000;
@@ -477,7 +514,11 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn located<T>(&self, result: Result<T, ExprError>, span: Range<usize>) -> Result<T, ParseError> {
+    fn located<T>(
+        &self,
+        result: Result<T, ExprError>,
+        span: Range<usize>,
+    ) -> Result<T, ParseError> {
         result.map_err(|error| self.error(span, &error.to_string(), ""))
     }
 
@@ -515,7 +556,11 @@ mod tests {
             ("1 - 2 - 3", -4, 1),
         ] {
             let expected = Rational::new(numerator.into(), denominator.into());
-            assert_eq!(parse_expression(text).unwrap(), Expr::number(expected), "{text}");
+            assert_eq!(
+                parse_expression(text).unwrap(),
+                Expr::number(expected),
+                "{text}"
+            );
         }
     }
 
@@ -559,7 +604,10 @@ mod tests {
             assert_eq!(equation.coordinate.name(), name);
         }
         assert_eq!(
-            parse_equation("theta'' + sin(theta)").unwrap().coordinate.name(),
+            parse_equation("theta'' + sin(theta)")
+                .unwrap()
+                .coordinate
+                .name(),
             "theta"
         );
     }
@@ -568,8 +616,18 @@ mod tests {
     #[test]
     fn mistakes_are_located_and_named() {
         for (text, place, message, help) in [
-            ("x'' + 2x = 0", "2x", "`2x`: a product needs its sign", "try `2*x`"),
-            ("2(x) + x''", "2(x)", "`2(x)`: a product needs its sign", "try `2*(x)`"),
+            (
+                "x'' + 2x = 0",
+                "2x",
+                "`2x`: a product needs its sign",
+                "try `2*x`",
+            ),
+            (
+                "2(x) + x''",
+                "2(x)",
+                "`2(x)`: a product needs its sign",
+                "try `2*(x)`",
+            ),
             (
                 "x sin(x)",
                 "x sin(x)",
@@ -588,9 +646,19 @@ mod tests {
                 "`sin(x)(x-1)`: a product needs its sign",
                 "try `sin(x)*(x-1)`",
             ),
-            ("k(x)", "k(x)", "`k(x)`: a product needs its sign", "try `k*(x)`"),
+            (
+                "k(x)",
+                "k(x)",
+                "`k(x)`: a product needs its sign",
+                "try `k*(x)`",
+            ),
             ("2e", "2e", "`2e`: a product needs its sign", "try `2*e`"),
-            ("0x10", "0x10", "`0x10`: a product needs its sign", "try `0*x10`"),
+            (
+                "0x10",
+                "0x10",
+                "`0x10`: a product needs its sign",
+                "try `0*x10`",
+            ),
             ("x 1", "x 1", "`x 1`: a product needs its sign", "try `x*1`"),
             (
                 "d2x/dt2 + x",
@@ -634,10 +702,30 @@ mod tests {
                 "`diff(x, t)`: derivatives are written with primes",
                 "try `x'` for the velocity, `x''` for the acceleration",
             ),
-            ("1 + sn(x)", "sn", "there is no function `sn`", "did you mean `sin`?"),
-            ("Sin(x)", "Sin", "there is no function `Sin`", "did you mean `sin`?"),
-            ("sqr(x)", "sqr", "there is no function `sqr`", "did you mean `sqrt`?"),
-            ("ln(x)", "ln", "there is no function `ln`", "did you mean `log`?"),
+            (
+                "1 + sn(x)",
+                "sn",
+                "there is no function `sn`",
+                "did you mean `sin`?",
+            ),
+            (
+                "Sin(x)",
+                "Sin",
+                "there is no function `Sin`",
+                "did you mean `sin`?",
+            ),
+            (
+                "sqr(x)",
+                "sqr",
+                "there is no function `sqr`",
+                "did you mean `sqrt`?",
+            ),
+            (
+                "ln(x)",
+                "ln",
+                "there is no function `ln`",
+                "did you mean `log`?",
+            ),
             (
                 "x + sin x",
                 "sin x",
@@ -662,9 +750,24 @@ mod tests {
                 "`x'''` has 3 primes",
                 "the highest derivative is `x''`",
             ),
-            ("t' + x", "t'", "`t` is no coordinate and carries no prime", ""),
-            ("(x)'", "'", "a prime stands directly after its letter", "try `x'`"),
-            ("x\" + x", "\"", "a double quote is no pair of primes", "try `x''`"),
+            (
+                "t' + x",
+                "t'",
+                "`t` is no coordinate and carries no prime",
+                "",
+            ),
+            (
+                "(x)'",
+                "'",
+                "a prime stands directly after its letter",
+                "try `x'`",
+            ),
+            (
+                "x\" + x",
+                "\"",
+                "a double quote is no pair of primes",
+                "try `x''`",
+            ),
             ("x +", "+", "something is missing after `+`", ""),
             ("x + * 2", "+", "something is missing after `+`", ""),
             ("* x", "*", "something is missing before `*`", ""),
@@ -674,15 +777,30 @@ mod tests {
             (")(", ")", "this `)` closes nothing", ""),
             ("()", "()", "nothing stands between these parentheses", ""),
             ("sin()", "sin()", "`sin` has no argument", ""),
-            ("sin(x, 1)", "sin(x, 1)", "`sin` takes 1 argument, not 2", ""),
+            (
+                "sin(x, 1)",
+                "sin(x, 1)",
+                "`sin` takes 1 argument, not 2",
+                "",
+            ),
             ("max(x)", "max(x)", "`max` takes 2 arguments, not 1", ""),
-            ("x == 1", "==", "`==`: an equation has a single sign", "try `=`"),
+            (
+                "x == 1",
+                "==",
+                "`==`: an equation has a single sign",
+                "try `=`",
+            ),
             ("x = 1 = 2", "=", "a second `=`", "an equation has one"),
             ("(x = 1)", "=", "an `=` inside parentheses", ""),
             ("x =", "=", "something is missing after `=`", ""),
             ("1/0", "0", "division by zero", ""),
             ("0/0", "0", "division by zero", ""),
-            ("x/(1 - 1)", "(1 - 1)", "division by zero: `(1 - 1)` is 0", ""),
+            (
+                "x/(1 - 1)",
+                "(1 - 1)",
+                "division by zero: `(1 - 1)` is 0",
+                "",
+            ),
             ("x + log(0)", "log(0)", "`log(0)` has no real value", ""),
             ("sqrt(-1)", "sqrt(-1)", "`(-1)^(1/2)` has no real value", ""),
             ("asin(2)", "asin(2)", "`asin(2)` has no real value", ""),
@@ -701,19 +819,44 @@ mod tests {
                 "this is no number",
                 "a decimal point stands among digits: `0.5`",
             ),
-            ("x\u{b2}", "\u{b2}", "`\u{b2}` (U+00B2) is not understood", "try `^2`"),
+            (
+                "x\u{b2}",
+                "\u{b2}",
+                "`\u{b2}` (U+00B2) is not understood",
+                "try `^2`",
+            ),
             (
                 "x \u{2212} 1",
                 "\u{2212}",
                 "`\u{2212}` (U+2212) is not understood",
                 "try `-`",
             ),
-            ("2\u{b7}x", "\u{b7}", "`\u{b7}` (U+00B7) is not understood", "try `*`"),
-            ("x \u{202e}1", "\u{202e}", "the character U+202E is not understood", ""),
+            (
+                "2\u{b7}x",
+                "\u{b7}",
+                "`\u{b7}` (U+00B7) is not understood",
+                "try `*`",
+            ),
+            (
+                "x \u{202e}1",
+                "\u{202e}",
+                "the character U+202E is not understood",
+                "",
+            ),
             ("x\0", "\0", "a NUL character", ""),
             ("x\u{1b}[31m", "\u{1b}", "a control character, U+001B", ""),
-            ("__import__(\"os\").getcwd()", "_", "a name begins with a letter", ""),
-            ("|x|", "|", "`|` is no sign here", "the absolute value is `abs(x)`"),
+            (
+                "__import__(\"os\").getcwd()",
+                "_",
+                "a name begins with a letter",
+                "",
+            ),
+            (
+                "|x|",
+                "|",
+                "`|` is no sign here",
+                "the absolute value is `abs(x)`",
+            ),
             (
                 "u'' + x",
                 "x",
@@ -732,8 +875,18 @@ mod tests {
                 "`kx''`: primes belong to a single letter or a Greek one",
                 "try `x''` or `phi''`",
             ),
-            ("", "", "the text is empty", "an example: `x'' + sin(x) = 0`"),
-            (" \n", "", "the text is empty", "an example: `x'' + sin(x) = 0`"),
+            (
+                "",
+                "",
+                "the text is empty",
+                "an example: `x'' + sin(x) = 0`",
+            ),
+            (
+                " \n",
+                "",
+                "the text is empty",
+                "an example: `x'' + sin(x) = 0`",
+            ),
         ] {
             let error = parse_equation(text).expect_err(text);
             assert_eq!(error.message, message, "{text:?}");
@@ -757,25 +910,46 @@ mod tests {
             shown("x'' +\n  x + 2x\n= 0"),
             "`2x`: a product needs its sign\n    x + 2x\n        ^^ try `2*x`"
         );
-        assert_eq!(shown(""), "the text is empty\n  an example: `x'' + sin(x) = 0`");
+        assert_eq!(
+            shown(""),
+            "the text is empty\n  an example: `x'' + sin(x) = 0`"
+        );
         assert_eq!(shown("x +"), "something is missing after `+`\n  x +\n    ^");
         // What a terminal would obey or reorder is not shown.
-        assert_eq!(shown("x\u{1b}[31m"), "a control character, U+001B\n  x?[31m\n   ^");
-        assert_eq!(shown("\u{202e}x"), "the character U+202E is not understood\n  ?x\n  ^");
-        let long = shown(&format!("{}2x{}", "x + ".repeat(1_000), " + x".repeat(1_000)));
+        assert_eq!(
+            shown("x\u{1b}[31m"),
+            "a control character, U+001B\n  x?[31m\n   ^"
+        );
+        assert_eq!(
+            shown("\u{202e}x"),
+            "the character U+202E is not understood\n  ?x\n  ^"
+        );
+        let long = shown(&format!(
+            "{}2x{}",
+            "x + ".repeat(1_000),
+            " + x".repeat(1_000)
+        ));
         let lines: Vec<&str> = long.lines().collect();
-        assert_eq!(lines[2].find('^').map(|place| &lines[1][place..place + 2]), Some("2x"));
+        assert_eq!(
+            lines[2].find('^').map(|place| &lines[1][place..place + 2]),
+            Some("2x")
+        );
         assert!(lines[1].len() < 110 && lines[1].ends_with("..."), "{long}");
     }
 
     /// Each ends in an error or a value, soon, and never in the stack.
     #[test]
     fn hostile_texts_end_in_an_error() {
-        let nested = |open: &str, close: &str, depth: usize| format!("{}x{}", open.repeat(depth), close.repeat(depth));
+        let nested = |open: &str, close: &str, depth: usize| {
+            format!("{}x{}", open.repeat(depth), close.repeat(depth))
+        };
         let deep = "nested more than 256 deep";
         let long = "the numbers here are too long to be written out";
         let wide = "the expression is too large to be brought into normal form";
-        let different = (0..8_000).map(|k| format!("x{k}")).collect::<Vec<_>>().join("+");
+        let different = (0..8_000)
+            .map(|k| format!("x{k}"))
+            .collect::<Vec<_>>()
+            .join("+");
         for (text, message) in [
             (nested("(", ")", 2_000), deep),
             (nested("sin(", ")", 2_000), deep),
@@ -793,24 +967,45 @@ mod tests {
                 "9^9^9^9^9".into(),
                 "`9^387420489` is too large a number to be written out",
             ),
-            ("x^1000000000".into(), "the exponent in `x^1000000000` is beyond 10000"),
+            (
+                "x^1000000000".into(),
+                "the exponent in `x^1000000000` is beyond 10000",
+            ),
             (
                 "((x^9999)^9999)".into(),
                 "the exponent in `(x^9999)^9999` is beyond 10000",
             ),
-            ("x^9999*x^9999".into(), "this product has an exponent beyond 10000"),
-            ("x^(1/10001)".into(), "the exponent in `x^(1/10001)` is beyond 10000"),
-            ("1e999999999999".into(), "the exponent of this number is beyond 400"),
+            (
+                "x^9999*x^9999".into(),
+                "this product has an exponent beyond 10000",
+            ),
+            (
+                "x^(1/10001)".into(),
+                "the exponent in `x^(1/10001)` is beyond 10000",
+            ),
+            (
+                "1e999999999999".into(),
+                "the exponent of this number is beyond 400",
+            ),
             (
                 "1e-99999999999999999999999".into(),
                 "the exponent of this number is beyond 400",
             ),
-            ((3..2_000).map(|n| format!("{n}^9999*")).collect::<String>() + "1", long),
             (
-                (3..2_000).map(|n| format!("1/{n}^900+")).collect::<String>() + "1",
+                (3..2_000).map(|n| format!("{n}^9999*")).collect::<String>() + "1",
                 long,
             ),
-            (format!("{}{}{}", "(".repeat(250), different, "+y)".repeat(250)), wide),
+            (
+                (3..2_000)
+                    .map(|n| format!("1/{n}^900+"))
+                    .collect::<String>()
+                    + "1",
+                long,
+            ),
+            (
+                format!("{}{}{}", "(".repeat(250), different, "+y)".repeat(250)),
+                wide,
+            ),
         ] {
             assert_eq!(
                 parse_expression(&text).unwrap_err().message,
@@ -823,7 +1018,9 @@ mod tests {
 
     #[test]
     fn the_limits_themselves_are_allowed() {
-        let nested = |open: &str, close: &str, depth: usize| format!("{}x{}", open.repeat(depth), close.repeat(depth));
+        let nested = |open: &str, close: &str, depth: usize| {
+            format!("{}x{}", open.repeat(depth), close.repeat(depth))
+        };
         let x = Expr::symbol("x");
         assert_eq!(parse_expression(&nested("(", ")", 256)).unwrap(), x);
         assert_eq!(parse_expression(&nested("-", "", 256)).unwrap(), x);
@@ -847,14 +1044,30 @@ mod tests {
 
     #[test]
     fn wide_texts_are_read_in_one_go() {
-        let sum = |term: &str, count: usize| parse_expression(&vec![term; count].join("+")).unwrap();
+        let sum =
+            |term: &str, count: usize| parse_expression(&vec![term; count].join("+")).unwrap();
         assert_eq!(sum("x", 20_000).to_string(), "20000*x");
         assert_eq!(sum("sin(x)", 9_000).to_string(), "9000*sin(x)");
         let different: Vec<String> = (0..9_000).map(|k| format!("x{k}")).collect();
-        assert_eq!(parse_expression(&different.join("+")).unwrap().terms().len(), 9_000);
-        assert_eq!(parse_expression(&different.join("*")).unwrap().factors().1.len(), 9_000);
         assert_eq!(
-            parse_expression(&vec!["(x+1)"; 9_000].join("*")).unwrap().to_string(),
+            parse_expression(&different.join("+"))
+                .unwrap()
+                .terms()
+                .len(),
+            9_000
+        );
+        assert_eq!(
+            parse_expression(&different.join("*"))
+                .unwrap()
+                .factors()
+                .1
+                .len(),
+            9_000
+        );
+        assert_eq!(
+            parse_expression(&vec!["(x+1)"; 9_000].join("*"))
+                .unwrap()
+                .to_string(),
             "(1 + x)^9000"
         );
         let quotients: Vec<String> = (10_001..17_000).map(|n| format!("1/{n}")).collect();

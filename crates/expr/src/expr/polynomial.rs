@@ -10,8 +10,9 @@ use crate::symbol::Symbol;
 impl Expr {
     /// This expression as a polynomial in its symbols, with exponents of either sign.
     ///
-    /// A factor that is no integer power of a symbol (`sqrt(k)`, `sin(1/2)`, `1/(1 + k)`) is offered to `name`, which may give
-    /// it a symbol of its own. `Ok(None)` where a factor stays without a name.
+    /// A factor that is no integer power of a symbol (`sqrt(k)`, `sin(1/2)`, `1/(1 + k)`) is
+    /// offered to `name`, which may give it a symbol of its own. `Ok(None)` where a factor stays
+    /// without a name.
     ///
     /// # Errors
     /// The expanded form would be too long.
@@ -37,10 +38,12 @@ impl Expr {
 }
 
 impl Expr {
-    /// The degree of a polynomial in one variable that can be told without writing it out: nothing of the highest degree can
-    /// cancel where one term alone has it. `None` where it takes more than that.
+    /// The degree of a polynomial in one variable that can be told without writing it out: nothing
+    /// of the highest degree can cancel where one term alone has it. `None` where it takes more
+    /// than that.
     pub fn degree_at_sight(&self, variable: Symbol) -> Option<u32> {
-        let degree = self.fold(|part, degrees: &[u32]| degree_of(part, degrees, variable).ok_or(()));
+        let degree =
+            self.fold(|part, degrees: &[u32]| degree_of(part, degrees, variable).ok_or(()));
         degree.ok()
     }
 }
@@ -52,14 +55,22 @@ fn degree_of(part: &Expr, degrees: &[u32], variable: Symbol) -> Option<u32> {
         Node::Symbol(name) => Some(u32::from(*name == variable)),
         Node::Sum(_) => {
             // A sum of constants may be zero.
-            let highest = degrees.iter().copied().max().filter(|&highest| highest > 0)?;
+            let highest = degrees
+                .iter()
+                .copied()
+                .max()
+                .filter(|&highest| highest > 0)?;
             let alone = degrees.iter().filter(|&&degree| degree == highest).count() == 1;
             alone.then_some(highest)
         }
-        Node::Product(..) => degrees.iter().try_fold(0_u32, |sum, &degree| sum.checked_add(degree)),
+        Node::Product(..) => degrees
+            .iter()
+            .try_fold(0_u32, |sum, &degree| sum.checked_add(degree)),
         Node::Power(_, exponent) if !constant => {
             let exponent = exponent.as_number().filter(|number| number.is_integer())?;
-            degrees.first()?.checked_mul(exponent.to_integer().to_u32()?)
+            degrees
+                .first()?
+                .checked_mul(exponent.to_integer().to_u32()?)
         }
         Node::Function(..) if !constant => None,
         Node::Number(_) | Node::Pi | Node::Power(..) | Node::Function(..) => Some(0),
@@ -74,9 +85,10 @@ fn single_factor(factor: &Expr, name: &mut dyn FnMut(&Expr) -> Option<Symbol>) -
             (Node::Symbol(symbol), Some(power)) if power.is_integer() => {
                 Some(Monomial::power_of(*symbol, power.to_integer().to_i32()?))
             }
-            (Node::Pi, Some(power)) if power.is_integer() => {
-                Some(Monomial::power_of(Symbol::new("pi"), power.to_integer().to_i32()?))
-            }
+            (Node::Pi, Some(power)) if power.is_integer() => Some(Monomial::power_of(
+                Symbol::new("pi"),
+                power.to_integer().to_i32()?,
+            )),
             // One name for all powers of a constant.
             (_, Some(power)) if power.is_integer() => {
                 let power = power.to_integer().to_i32()?;
@@ -92,7 +104,8 @@ impl From<&Polynomial> for Expr {
     fn from(polynomial: &Polynomial) -> Self {
         let power = |&(symbol, exponent): &(Symbol, i32)| {
             let exponent = Self::from(i64::from(exponent));
-            normal::power(&Self::from(symbol), &exponent).expect("a whole power of a symbol is never undefined")
+            normal::power(&Self::from(symbol), &exponent)
+                .expect("a whole power of a symbol is never undefined")
         };
         let term = |(monomial, coefficient): (&Monomial, &Rational)| {
             let powers = monomial.factors().iter().map(power);
@@ -138,7 +151,9 @@ mod tests {
             let mut constant = |factor: &Expr| (!factor.contains(x)).then(|| Symbol::new("c"));
             let polynomial = expression.to_polynomial(&mut constant).unwrap();
             let range = polynomial.and_then(|polynomial| polynomial.exponent_range(x));
-            let known = range.filter(|range| range.0 >= 0).map(|range| range.1 as u32);
+            let known = range
+                .filter(|range| range.0 >= 0)
+                .map(|range| range.1 as u32);
             assert_eq!(known, degree, "{text}");
             let found = expression.degree_at_sight(x);
             assert_eq!(found, degree.filter(|_| at_sight), "{text}");

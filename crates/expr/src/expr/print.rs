@@ -1,8 +1,9 @@
-//! Expressions as text that reads back to the same tree, within the limits of reading: computed numbers and exponents
-//! may be longer than a text may hold.
+//! Expressions as text that reads back to the same tree, within the limits of reading: computed
+//! numbers and exponents may be longer than a text may hold.
 //!
-//! A product prints as a fraction: numerator over denominator, `8*eps*A/(3*pi)`; [`Expr::fraction`] is that split, for
-//! every other notation to share. A long number that is a decimal prints as one, `1e-300`. Powers with a negative number as exponent stand in the denominator; the power 1/2 is
+//! A product prints as a fraction: numerator over denominator, `8*eps*A/(3*pi)`; [`Expr::fraction`]
+//! is that split, for every other notation to share. A long number that is a decimal prints as one,
+//! `1e-300`. Powers with a negative number as exponent stand in the denominator; the power 1/2 is
 //! written `sqrt(k)`.
 
 use std::fmt::{self, Write};
@@ -60,8 +61,9 @@ impl Expr {
 }
 
 impl Expr {
-    /// A root of a sum with the number before it under it, where rounded numbers stand there then, of fifteen digits:
-    /// `sqrt(1.27901878616664 + A^2)` for `1e-14*sqrt(1.27901878616664e28 + ...)`, as which the normal form has it. For reading alone.
+    /// A root of a sum with the number before it under it, where rounded numbers stand there then,
+    /// of fifteen digits: `sqrt(1.27901878616664 + A^2)` for
+    /// `1e-14*sqrt(1.27901878616664e28 + ...)`, as which the normal form has it. For reading alone.
     pub fn with_number_under_root(&self) -> Option<Self> {
         /// A fraction with more signs than this must be a rounded number.
         const MANY: usize = 16;
@@ -71,7 +73,9 @@ impl Expr {
         let Node::Power(sum, exponent) = root.node() else {
             return None;
         };
-        let Node::Sum(terms) = sum.node() else { return None };
+        let Node::Sum(terms) = sum.node() else {
+            return None;
+        };
         if !is_half(exponent) || !number.is_positive() || number.is_one() {
             return None;
         }
@@ -90,7 +94,10 @@ impl Expr {
             };
             Self::product(std::iter::once(Self::number(number)).chain(factors.iter().cloned()))
         });
-        Some(Self::from_node(Node::Power(Self::sum(rounded), exponent.clone())))
+        Some(Self::from_node(Node::Power(
+            Self::sum(rounded),
+            exponent.clone(),
+        )))
     }
 }
 
@@ -100,7 +107,8 @@ impl fmt::Display for Expr {
     }
 }
 
-/// An expression as it stands in parentheses or below a root, which the caller writes: `A^2 - x^2` for `-x^2 + A^2`.
+/// An expression as it stands in parentheses or below a root, which the caller writes: `A^2 - x^2`
+/// for `-x^2 + A^2`.
 pub struct Inside<'a>(pub &'a Expr);
 
 impl fmt::Display for Inside<'_> {
@@ -122,12 +130,19 @@ fn write_expr(expr: &Expr, place: Place, formatter: &mut fmt::Formatter<'_>) -> 
 }
 
 impl Expr {
-    /// The terms as they stand in parentheses: where the first has a minus, those next without one stand before it.
+    /// The terms as they stand in parentheses: where the first has a minus, those next without one
+    /// stand before it.
     pub fn terms_inside(&self) -> impl Iterator<Item = &Self> {
         let terms = self.terms();
-        let minus = terms.iter().take_while(|term| term.has_leading_minus()).count();
+        let minus = terms
+            .iter()
+            .take_while(|term| term.has_leading_minus())
+            .count();
         let (minus, others) = terms.split_at(minus);
-        let plus = others.iter().take_while(|term| !term.has_leading_minus()).count();
+        let plus = others
+            .iter()
+            .take_while(|term| !term.has_leading_minus())
+            .count();
         let (plus, others) = others.split_at(plus);
         plus.iter().chain(minus).chain(others)
     }
@@ -181,7 +196,12 @@ fn in_parentheses(expr: &Expr, place: Place) -> bool {
     }
 }
 
-fn write_node(expr: &Expr, place: Place, out: &mut fmt::Formatter<'_>, open: &mut Vec<Piece>) -> fmt::Result {
+fn write_node(
+    expr: &Expr,
+    place: Place,
+    out: &mut fmt::Formatter<'_>,
+    open: &mut Vec<Piece>,
+) -> fmt::Result {
     if in_parentheses(expr, place) {
         open.extend([Piece::Text(")"), Piece::Expr(expr.clone(), Place::Inside)]);
         return out.write_char('(');
@@ -279,9 +299,9 @@ fn push_factors(factors: &[Expr], open: &mut Vec<Piece>) {
 }
 
 fn is_half(exponent: &Expr) -> bool {
-    exponent
-        .as_number()
-        .is_some_and(|number| number.numer() == ratio(1, 2).numer() && number.denom() == ratio(1, 2).denom())
+    exponent.as_number().is_some_and(|number| {
+        number.numer() == ratio(1, 2).numer() && number.denom() == ratio(1, 2).denom()
+    })
 }
 
 /// The start of an expression, short enough for a message.
@@ -312,8 +332,9 @@ pub(super) fn call_in_message(function: Function, arguments: &[Expr]) -> String 
 }
 
 fn is_long_number(expr: &Expr) -> bool {
-    expr.as_number()
-        .is_some_and(|number| !number.is_zero() && number.numer().bits() + number.denom().bits() > 4_096)
+    expr.as_number().is_some_and(|number| {
+        !number.is_zero() && number.numer().bits() + number.denom().bits() > 4_096
+    })
 }
 
 struct Shortened(String);
@@ -398,8 +419,14 @@ mod tests {
             ("1/30000000000000", "1/30000000000000"),
             ("549183/2097152", "549183/2097152"),
             ("7/4503599627370496", "7/4503599627370496"),
-            ("A/403291461126605635584000000", "A/403291461126605635584000000"),
-            ("0.1234567890123456789", "1234567890123456789/10000000000000000000"),
+            (
+                "A/403291461126605635584000000",
+                "A/403291461126605635584000000",
+            ),
+            (
+                "0.1234567890123456789",
+                "1234567890123456789/10000000000000000000",
+            ),
         ] {
             let number = parse_expression(text).unwrap();
             assert_eq!(number.to_string(), printed);
@@ -429,18 +456,26 @@ mod tests {
         ] {
             let expr = parse_expression(text).unwrap();
             let read = expr.with_number_under_root();
-            assert_eq!(read.as_ref().map(ToString::to_string).as_deref(), printed, "{text}");
+            assert_eq!(
+                read.as_ref().map(ToString::to_string).as_deref(),
+                printed,
+                "{text}"
+            );
         }
     }
 
     #[test]
     fn fractions_split() {
         let texts = |list: &[Expr]| list.iter().map(ToString::to_string).collect::<Vec<_>>();
-        let fraction = parse_expression("-8*eps*A/(3*pi*sqrt(k))").unwrap().fraction();
+        let fraction = parse_expression("-8*eps*A/(3*pi*sqrt(k))")
+            .unwrap()
+            .fraction();
         assert!(fraction.negative);
         assert_eq!(texts(&fraction.numerator), ["8", "eps", "A"]);
         assert_eq!(texts(&fraction.denominator), ["3", "pi", "sqrt(k)"]);
         let whole = parse_expression("1/x").unwrap().fraction();
-        assert!(!whole.negative && whole.numerator.is_empty() && texts(&whole.denominator) == ["x"]);
+        assert!(
+            !whole.negative && whole.numerator.is_empty() && texts(&whole.denominator) == ["x"]
+        );
     }
 }

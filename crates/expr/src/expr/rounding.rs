@@ -1,10 +1,11 @@
-//! How many digits of a value rounding leaves: an expression evaluated together with a bound of its rounding error.
+//! How many digits of a value rounding leaves: an expression evaluated together with a bound of its
+//! rounding error.
 //!
-//! Reference: N. J. Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., SIAM 2002, section 3.3 (running error
-//! analysis).
+//! Reference: N. J. Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., SIAM 2002,
+//! section 3.3 (running error analysis).
 //!
-//! `4*(cos(A/sqrt(2)) - cos(A))/A^2` is right as a formula and has no correct digit at `A = 1e-8`: both cosines are one. Whoever
-//! evaluates it has to know.
+//! `4*(cos(A/sqrt(2)) - cos(A))/A^2` is right as a formula and has no correct digit at `A = 1e-8`:
+//! both cosines are one. Whoever evaluates it has to know.
 
 use std::collections::BTreeMap;
 
@@ -22,10 +23,12 @@ pub type Rounded = (f64, f64);
 /// Half a unit in the last place, and some room for library functions that are not quite as good.
 const UNIT: f64 = 1.5 * f64::EPSILON;
 
-/// The part of its size by which rounding may move a force before nothing that is computed from it has its six digits.
+/// The part of its size by which rounding may move a force before nothing that is computed from it
+/// has its six digits.
 const MOST_LOST: f64 = 1e-6;
 
-/// An expression whose value double precision does not hold: at a position so large, its next neighbour among the doubles is far away.
+/// An expression whose value double precision does not hold: at a position so large, its next
+/// neighbour among the doubles is far away.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error(
     "`{expression}` has no digits left at {name} = {}: in double precision {name} and what is made of it are rounded there so \
@@ -44,9 +47,10 @@ pub struct LostDigits {
 }
 
 impl Expr {
-    /// Refuses a place at which this expression has no digits: where rounding moves it by more than a millionth of its size, the
-    /// `uncertain` symbols being rounded themselves, there and a little nearer to zero, so that neither a jump nor a zero at the
-    /// place counts. A difference that loses its digits towards zero is no such place: they are there for no smaller values.
+    /// Refuses a place at which this expression has no digits: where rounding moves it by more than
+    /// a millionth of its size, the `uncertain` symbols being rounded themselves, there and a
+    /// little nearer to zero, so that neither a jump nor a zero at the place counts. A difference
+    /// that loses its digits towards zero is no such place: they are there for no smaller values.
     ///
     /// # Errors
     /// [`LostDigits`] names the symbol.
@@ -59,7 +63,11 @@ impl Expr {
     /// assert!(force.check_digits(&[("x".into(), 1e3)].into(), &["x".into()]).is_ok());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn check_digits(&self, values: &BTreeMap<Symbol, f64>, uncertain: &[Symbol]) -> Result<(), LostDigits> {
+    pub fn check_digits(
+        &self,
+        values: &BTreeMap<Symbol, f64>,
+        uncertain: &[Symbol],
+    ) -> Result<(), LostDigits> {
         const NEARER: [f64; 5] = [1.0, 0.999, 0.98, 0.9, 0.7];
         let lost_at = |scale: f64| {
             let (mut least, mut size) = (f64::INFINITY, 0.0_f64);
@@ -71,7 +79,10 @@ impl Expr {
                         false => (value, 0.0),
                     })
                 };
-                if let Some((value, error)) = self.evaluate_rounded(&there).filter(|(value, _)| value.is_finite()) {
+                if let Some((value, error)) = self
+                    .evaluate_rounded(&there)
+                    .filter(|(value, _)| value.is_finite())
+                {
                     least = least.min(error);
                     size = size.max(value.abs());
                 }
@@ -86,7 +97,10 @@ impl Expr {
             return Ok(());
         }
         let of_one = |name: &Symbol| values.get(name).map_or(0.0, |value| value.abs());
-        let worst = uncertain.iter().copied().filter(|name| self.contains(*name));
+        let worst = uncertain
+            .iter()
+            .copied()
+            .filter(|name| self.contains(*name));
         let Some(name) = worst.max_by(|one, other| of_one(one).total_cmp(&of_one(other))) else {
             return Ok(());
         };
@@ -98,7 +112,8 @@ impl Expr {
         })
     }
 
-    /// The value with a bound of the error that rounding makes, given the same of the symbols; `None` where a symbol is missing.
+    /// The value with a bound of the error that rounding makes, given the same of the symbols;
+    /// `None` where a symbol is missing.
     ///
     /// ```
     /// # use lindstedt_expr as lindstedt;
@@ -108,13 +123,20 @@ impl Expr {
     /// assert!((value - 0.5).abs() < 1e-6 && error > 1e-12 && error < 1e-8);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn evaluate_rounded(&self, value_of: &dyn Fn(Symbol) -> Option<Rounded>) -> Option<Rounded> {
+    pub fn evaluate_rounded(
+        &self,
+        value_of: &dyn Fn(Symbol) -> Option<Rounded>,
+    ) -> Option<Rounded> {
         self.fold(|expr, children: &[Rounded]| node(expr, children, value_of).ok_or(()))
             .ok()
     }
 }
 
-fn node(expr: &Expr, children: &[Rounded], value_of: &dyn Fn(Symbol) -> Option<Rounded>) -> Option<Rounded> {
+fn node(
+    expr: &Expr,
+    children: &[Rounded],
+    value_of: &dyn Fn(Symbol) -> Option<Rounded>,
+) -> Option<Rounded> {
     Some(match (expr.node(), children) {
         (Node::Number(number), _) => {
             let value = to_f64(number);
@@ -161,13 +183,17 @@ fn node(expr: &Expr, children: &[Rounded], value_of: &dyn Fn(Symbol) -> Option<R
                 }
                 _ => base.powf(power),
             };
-            let slack = if number.is_some_and(|number| number.denom().is_one() && number.abs() <= One::one()) {
+            let slack = if number
+                .is_some_and(|number| number.denom().is_one() && number.abs() <= One::one())
+            {
                 0.0
             } else {
                 power.1
             };
-            // A base that rounding alone takes below zero is not negative where the power has a value.
-            let is_root = number.is_some_and(|number| number.is_positive() && !number.denom().is_odd());
+            // A base that rounding alone takes below zero is not negative where the power has a
+            // value.
+            let is_root =
+                number.is_some_and(|number| number.is_positive() && !number.denom().is_odd());
             let shifted = |shift: f64| match base.0 + shift * base.1 {
                 below if below < 0.0 && is_root && base.0 >= 0.0 => 0.0,
                 other => other,
@@ -178,7 +204,8 @@ fn node(expr: &Expr, children: &[Rounded], value_of: &dyn Fn(Symbol) -> Option<R
             moved(&|shift| function.value(one.0 + shift * one.1, one.0 + shift * one.1))
         }
         (Node::Function(function, _), [one, other]) => {
-            let (value, error) = moved(&|shift| function.value(one.0 + shift * one.1, other.0 + shift * other.1));
+            let (value, error) =
+                moved(&|shift| function.value(one.0 + shift * one.1, other.0 + shift * other.1));
             // Of `max` and `min` the arguments may move against each other.
             (value, error + one.1 + other.1)
         }
@@ -186,13 +213,18 @@ fn node(expr: &Expr, children: &[Rounded], value_of: &dyn Fn(Symbol) -> Option<R
     })
 }
 
-/// A function of one number at zero, and how far it moves when that number moves to one side or the other.
+/// A function of one number at zero, and how far it moves when that number moves to one side or the
+/// other.
 fn moved(function: &dyn Fn(f64) -> f64) -> Rounded {
     let value = function(0.0);
     let spread = [-1.0, 1.0].map(|side| (function(side) - value).abs());
     // At the edge of where the function is defined only one side says something.
     let spread = spread.into_iter().fold(0.0, f64::max);
-    let error = if spread.is_nan() { f64::INFINITY } else { spread };
+    let error = if spread.is_nan() {
+        f64::INFINITY
+    } else {
+        spread
+    };
     (value, error + 2.0 * UNIT * value.abs())
 }
 
@@ -217,7 +249,10 @@ mod tests {
                 let at = |expr: &Expr| expr.evaluate_rounded(&|_| Some((amplitude, 0.0))).unwrap();
                 let ((value, bound), (truth, own)) = (at(&cancels), at(&exact));
                 let error = (value - truth).abs();
-                assert!(error <= bound + own, "{cancels} at {amplitude}: {error} {bound}");
+                assert!(
+                    error <= bound + own,
+                    "{cancels} at {amplitude}: {error} {bound}"
+                );
                 assert!(
                     bound <= 1e-14 * value.abs() / amplitude.powi(2),
                     "{cancels} at {amplitude}: {bound}"

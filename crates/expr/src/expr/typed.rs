@@ -1,4 +1,5 @@
-//! The terms of an equation as they were typed: for messages, which speak of what the reader wrote and not of a normal form.
+//! The terms of an equation as they were typed: for messages, which speak of what the reader wrote
+//! and not of a normal form.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -31,8 +32,9 @@ pub(super) struct TypedTerm {
     pub around: Option<Arc<Around>>,
 }
 
-/// What stands around a bracket: of `-2*(x + x^2)/3` the texts `2*(` and `)/3`, and the minus. A bracket that nothing scales
-/// leaves the texts empty. Around a bracket in a bracket stands what stands around both.
+/// What stands around a bracket: of `-2*(x + x^2)/3` the texts `2*(` and `)/3`, and the minus. A
+/// bracket that nothing scales leaves the texts empty. Around a bracket in a bracket stands what
+/// stands around both.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Around {
     pub opening: String,
@@ -43,8 +45,8 @@ pub(super) struct Around {
     pub scale: Expr,
 }
 
-/// A part of an equation that a refusal names: what it is, and the words for it, which are those of the reader once it is known
-/// which typed term it comes from.
+/// A part of an equation that a refusal names: what it is, and the words for it, which are those of
+/// the reader once it is known which typed term it comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Quotation {
     expression: Expr,
@@ -120,15 +122,20 @@ impl Typed {
         Ok(typed)
     }
 
-    /// The terms of these numbers, counted from zero, as one text: `0.5*(x')^3`. A single term has the sign that it was typed
-    /// with; of several, those of the right side are brought to the left, and those of different brackets keep their scale, as a mere
-    /// number in a bracket does.
+    /// The terms of these numbers, counted from zero, as one text: `0.5*(x')^3`. A single term has
+    /// the sign that it was typed with; of several, those of the right side are brought to the
+    /// left, and those of different brackets keep their scale, as a mere number in a bracket does.
     pub fn quote(&self, numbers: &[usize]) -> String {
         /// The longest text that a message quotes in full.
         const LONGEST: usize = 120;
-        let terms: Vec<&TypedTerm> = numbers.iter().filter_map(|&number| self.terms.get(number)).collect();
-        let is_number = |term: &&TypedTerm| !self.text[term.span.clone()].contains(char::is_alphabetic);
-        let scaled = terms.iter().any(|term| term.around != terms[0].around) || terms.iter().all(is_number);
+        let terms: Vec<&TypedTerm> = numbers
+            .iter()
+            .filter_map(|&number| self.terms.get(number))
+            .collect();
+        let is_number =
+            |term: &&TypedTerm| !self.text[term.span.clone()].contains(char::is_alphabetic);
+        let scaled =
+            terms.iter().any(|term| term.around != terms[0].around) || terms.iter().all(is_number);
         let mut quote = String::new();
         for term in &terms {
             let around = term.around.as_ref().filter(|_| scaled);
@@ -151,7 +158,8 @@ impl Typed {
         }
     }
 
-    /// The line in which a quotation stands, and a line with carets under it; `None` where it stands nowhere as it is.
+    /// The line in which a quotation stands, and a line with carets under it; `None` where it
+    /// stands nowhere as it is.
     pub fn place(&self, quotation: &str) -> Option<[String; 2]> {
         let number = (0..self.terms.len()).find(|&number| self.quote(&[number]) == quotation);
         let span = match number.and_then(|number| self.terms.get(number)) {

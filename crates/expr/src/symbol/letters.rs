@@ -1,9 +1,11 @@
-//! The letters of an answer: how its amplitudes and its frequency are written beside the names of an equation.
+//! The letters of an answer: how its amplitudes and its frequency are written beside the names of
+//! an equation.
 //!
-//! In an answer the amplitude is `A`, that of the first harmonic `a`, the frequency `omega`. Where an equation has one of these names
-//! for something of its own, the equation keeps it, and the answer takes another. Inside the crate the symbols of an answer are the same
-//! for every equation, those of such an equation are [apart](Symbol::apart), and [`Letters`] in force say how the former are printed:
-//! in formulas and in sentences, in every format.
+//! In an answer the amplitude is `A`, that of the first harmonic `a`, the frequency `omega`. Where
+//! an equation has one of these names for something of its own, the equation keeps it, and the
+//! answer takes another. Inside the crate the symbols of an answer are the same for every equation,
+//! those of such an equation are [apart](Symbol::apart), and [`Letters`] in force say how the
+//! former are printed: in formulas and in sentences, in every format.
 
 use std::cell::Cell;
 use std::marker::PhantomData;
@@ -67,8 +69,8 @@ impl Drop for InForce {
 }
 
 impl Letters {
-    /// The letters of an answer to an equation that has these names: those that it leaves free. A `driven` equation has its `Omega`
-    /// for the drive.
+    /// The letters of an answer to an equation that has these names: those that it leaves free. A
+    /// `driven` equation has its `Omega` for the drive.
     pub fn beside(names: &[Symbol], driven: bool) -> Self {
         let clash = |own: &Symbol| {
             [AMPLITUDE, FIRST_HARMONIC, FREQUENCY]
@@ -88,7 +90,11 @@ impl Letters {
             taken.push(letter);
             letter
         };
-        let frequencies: &[&str] = if driven { &["nu", "w"] } else { &["Omega", "nu", "w"] };
+        let frequencies: &[&str] = if driven {
+            &["nu", "w"]
+        } else {
+            &["Omega", "nu", "w"]
+        };
         Self {
             amplitude: free(AMPLITUDE, &["C", "X", "A_0"]),
             first_harmonic: free(FIRST_HARMONIC, &["r", "rho", "a_1"]),
@@ -101,8 +107,8 @@ impl Letters {
         Some(IN_FORCE.get()).filter(|letters| *letters != USUAL)
     }
 
-    /// Puts these letters in force on this thread, until what is returned is dropped; unusual ones that are in force already stay, for
-    /// they belong to the equation that was asked about.
+    /// Puts these letters in force on this thread, until what is returned is dropped; unusual ones
+    /// that are in force already stay, for they belong to the equation that was asked about.
     pub fn in_force(self) -> InForce {
         Self::current().unwrap_or(self).exactly()
     }
@@ -127,11 +133,13 @@ impl Letters {
             (FIRST_HARMONIC, self.first_harmonic),
             (FREQUENCY, self.frequency),
         ];
-        pairs.into_iter().filter(|(usual, written)| usual != written)
+        pairs
+            .into_iter()
+            .filter(|(usual, written)| usual != written)
     }
 
-    /// The symbol that a person means by this name beside an equation with these names: one of the equation, or else the one that is
-    /// written so in the answer.
+    /// The symbol that a person means by this name beside an equation with these names: one of the
+    /// equation, or else the one that is written so in the answer.
     pub fn meant(&self, name: Symbol, names: &[Symbol]) -> Symbol {
         if let Some(own) = names.iter().find(|own| own.name() == name.name()) {
             return *own;
@@ -167,8 +175,13 @@ mod tests {
 
     #[test]
     fn letters_of_an_answer_give_way_to_those_of_the_equation() {
-        let names = |letters: Letters| [letters.amplitude, letters.first_harmonic, letters.frequency].map(Symbol::name);
-        assert_eq!(names(Letters::beside(&["x".into()], false)), ["A", "a", "omega"]);
+        let names = |letters: Letters| {
+            [letters.amplitude, letters.first_harmonic, letters.frequency].map(Symbol::name)
+        };
+        assert_eq!(
+            names(Letters::beside(&["x".into()], false)),
+            ["A", "a", "omega"]
+        );
         let all = ["A", "C", "a", "omega"].map(Symbol::new);
         assert_eq!(names(Letters::beside(&all, false)), ["X", "r", "Omega"]);
         assert_eq!(names(Letters::beside(&all, true)), ["X", "r", "nu"]);
@@ -182,7 +195,10 @@ mod tests {
         let letters = Letters::beside(&[equation], false);
         {
             let _letters = letters.in_force();
-            assert_eq!(format!("{answer} {} {equation}", answer.derivative()), "r r' a");
+            assert_eq!(
+                format!("{answer} {} {equation}", answer.derivative()),
+                "r r' a"
+            );
             let _others = Letters::beside(&["omega".into()], false).in_force();
             assert_eq!(answer.to_string(), "r");
         }

@@ -1,8 +1,10 @@
-//! What a barrier is good for: the rest time beside that without a barrier and with one that loses nothing.
+//! What a barrier is good for: the rest time beside that without a barrier and with one that loses
+//! nothing.
 //!
-//! A barrier that loses nothing already shortens the rest, because the swing becomes shorter and faster: under light viscous
-//! damping the action, the area S of the orbit in the phase plane, falls as exp(-2 zeta t) whatever the orbit, and a swing cut at the
-//! barrier starts with less of it. What is left of a gain is the loss in contact. With A the first amplitude and a = A/10,
+//! A barrier that loses nothing already shortens the rest, because the swing becomes shorter and
+//! faster: under light viscous damping the action, the area S of the orbit in the phase plane,
+//! falls as exp(-2 zeta t) whatever the orbit, and a swing cut at the barrier starts with less of
+//! it. What is left of a gain is the loss in contact. With A the first amplitude and a = A/10,
 //!
 //! ```text
 //! S(A) = 2 int_-A^A x' dx        = 16 (E(m) - (1 - m) K(m)),  m = sin^2(A/2)      without a barrier
@@ -11,7 +13,8 @@
 //! t - t_c = ln(S(A) S_c(a)/(S_c(A) S(a)))/(2 zeta)                                the gain by geometry alone
 //! ```
 //!
-//! In: a motion that was followed. Out: a [`Baseline`], two more motions from the same start, and the ratio of the actions.
+//! In: a motion that was followed. Out: a [`Baseline`], two more motions from the same start, and
+//! the ratio of the actions.
 
 use std::f64::consts::PI;
 
@@ -27,8 +30,9 @@ pub struct Baseline {
     pub no_barrier: Result<f64, NoRest>,
     /// With the same barrier, elastic: mu = 0.
     pub lossless_barrier: Result<f64, NoRest>,
-    /// What the actions say of the difference; nothing with dry friction, where the first swing turns over, where a barrier
-    /// holds the pendulum above the bottom, or where two hold it within a tenth of it.
+    /// What the actions say of the difference; nothing with dry friction, where the first swing
+    /// turns over, where a barrier holds the pendulum above the bottom, or where two hold it within
+    /// a tenth of it.
     pub geometry: Option<Geometry>,
 }
 
@@ -39,13 +43,14 @@ pub struct Geometry {
     pub first_swing: f64,
     /// S(a)/S_c(a), the same at rest, a = A/10: 1 where the barrier is out of its reach.
     pub at_rest: f64,
-    /// ln(first_swing/at_rest)/(2 zeta), in units of 1/omega: by how much sooner the cut swing rests.
+    /// ln(first_swing/at_rest)/(2 zeta), in units of 1/omega: by how much sooner the cut swing
+    /// rests.
     pub gain: f64,
 }
 
 impl Geometry {
-    /// By the actions of a swing of this amplitude, rad, about the bottom between the barriers of the model; nothing where the formula says
-    /// nothing.
+    /// By the actions of a swing of this amplitude, rad, about the bottom between the barriers of
+    /// the model; nothing where the formula says nothing.
     fn of(model: &Model, amplitude: f64) -> Option<Self> {
         let caged = model.is_caged(0.0, REST_FRACTION * amplitude);
         if model.zeta == 0.0 || model.alpha != 0.0 || amplitude >= PI || caged {
@@ -69,8 +74,8 @@ impl Geometry {
 /// So many times the duration of the run are the others followed for: they rest later.
 pub const BASELINE_DURATIONS: f64 = 4.0;
 
-/// The rest times beside that of this motion; `None` where there is nothing to compare: no impact, nothing that damps the swing, or a
-/// pivot that moves.
+/// The rest times beside that of this motion; `None` where there is nothing to compare: no impact,
+/// nothing that damps the swing, or a pivot that moves.
 ///
 /// # Errors
 /// As [`simulate`].
@@ -90,7 +95,11 @@ pub const BASELINE_DURATIONS: f64 = 4.0;
 pub fn baseline(motion: &Simulation) -> Result<Option<Baseline>, SimulationError> {
     let model = motion.model;
     let damped = model.zeta > 0.0 || model.alpha > 0.0;
-    if motion.impacts.is_empty() || !damped || model.beta != 0.0 || motion.model.depth(motion.start.x).is_some() {
+    if motion.impacts.is_empty()
+        || !damped
+        || model.beta != 0.0
+        || motion.model.depth(motion.start.x).is_some()
+    {
         return Ok(None);
     }
     let settings = Settings {

@@ -1,7 +1,8 @@
-//! One case of a study: a pendulum and its barrier as an engineer states them, by dimensions and materials or by the numbers
-//! of equation (7).
+//! One case of a study: a pendulum and its barrier as an engineer states them, by dimensions and
+//! materials or by the numbers of equation (7).
 //!
-//! In: a [`Case`], any of whose numbers a [`Parameter`] reads or writes. Out: the [`Model`] and the [`Start`] that follow:
+//! In: a [`Case`], any of whose numbers a [`Parameter`] reads or writes. Out: the [`Model`] and the
+//! [`Start`] that follow:
 //!
 //! ```text
 //! gamma = (4/3) E sqrt(R) L^(3/2) / (m g)      where it is not given        equation (8), l = L
@@ -14,8 +15,8 @@ use std::f64::consts::PI;
 use thiserror::Error;
 
 use super::dissipation::{
-    ContactDamping, ContactScales, DampingError, Dissipation, SpeedUnit, friction_of_torque, torque_of_friction,
-    viscous_coefficient, viscous_ratio,
+    ContactDamping, ContactScales, DampingError, Dissipation, SpeedUnit, friction_of_torque,
+    torque_of_friction, viscous_coefficient, viscous_ratio,
 };
 use super::hertz::{Design, NotPositive};
 use super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, Side, Start};
@@ -37,11 +38,13 @@ pub struct Case {
     pub left: Option<f64>,
     /// Position of the right barrier x_c, rad.
     pub right: Option<f64>,
-    /// Dimensionless stiffness gamma of the contact, positive, where it is not that of the design; 0 for no barrier.
+    /// Dimensionless stiffness gamma of the contact, positive, where it is not that of the design;
+    /// 0 for no barrier.
     pub gamma: Option<f64>,
     /// Damping of the contact.
     pub contact_damping: ContactDamping,
-    /// The speed, in `speed_unit`, at which a restitution is stated; without it that of the first touch without damping.
+    /// The speed, in `speed_unit`, at which a restitution is stated; without it that of the first
+    /// touch without damping.
     pub at_speed: Option<f64>,
     /// The unit of that speed.
     pub speed_unit: SpeedUnit,
@@ -93,7 +96,9 @@ impl Default for Case {
 #[non_exhaustive]
 pub enum CaseError {
     /// A release that is none.
-    #[error("[pendulum] amplitude must be a positive number, not {0}; for another start give `start` and `speed`")]
+    #[error(
+        "[pendulum] amplitude must be a positive number, not {0}; for another start give `start` and `speed`"
+    )]
     Amplitude(f64),
     /// A release behind a barrier, which is no release.
     #[error(
@@ -118,7 +123,9 @@ pub enum CaseError {
     #[error("[contact] mu = {0} damps a barrier, and gamma = 0 is none: leave out one of them")]
     NothingToDamp(f64),
     /// An excitation without a frequency.
-    #[error("[excitation] beta = {0} needs a frequency_ratio above 0: a pivot that stands still excites nothing")]
+    #[error(
+        "[excitation] beta = {0} needs a frequency_ratio above 0: a pivot that stands still excites nothing"
+    )]
     NoFrequency(f64),
     /// The equation or its start.
     #[error(transparent)]
@@ -126,7 +133,8 @@ pub enum CaseError {
 }
 
 impl Case {
-    /// The value of a parameter; nothing where the case leaves it to others: gamma to the design, the start to the amplitude.
+    /// The value of a parameter; nothing where the case leaves it to others: gamma to the design,
+    /// the start to the amplitude.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         match parameter {
             Parameter::Amplitude => Some(self.amplitude),
@@ -218,7 +226,9 @@ impl Case {
     pub fn motion(&self) -> Result<(Model, Start), CaseError> {
         let x = match self.start {
             Some(start) => start,
-            None if self.amplitude > 0.0 && self.amplitude.is_finite() => -self.side.sign() * self.amplitude,
+            None if self.amplitude > 0.0 && self.amplitude.is_finite() => {
+                -self.side.sign() * self.amplitude
+            }
             None => return Err(CaseError::Amplitude(self.amplitude)),
         };
         let start = Start {
@@ -232,16 +242,24 @@ impl Case {
         }
         let barrier = |place: Option<f64>| place.filter(|_| gamma != 0.0);
         let units = self.si();
-        let in_si = |key, value: Option<f64>, number: f64, convert: fn(f64, &Units) -> f64| match value {
-            None => Ok(number),
-            Some(value) if value.is_nan() || value < 0.0 => Err(DampingError::Negative { key, value }),
-            Some(value) => match convert(value, &units) {
-                number if number.is_finite() => Ok(number),
-                _ => Err(DampingError::NotFinite { key, value }),
-            },
-        };
+        let in_si =
+            |key, value: Option<f64>, number: f64, convert: fn(f64, &Units) -> f64| match value {
+                None => Ok(number),
+                Some(value) if value.is_nan() || value < 0.0 => {
+                    Err(DampingError::Negative { key, value })
+                }
+                Some(value) => match convert(value, &units) {
+                    number if number.is_finite() => Ok(number),
+                    _ => Err(DampingError::NotFinite { key, value }),
+                },
+            };
         let zeta = in_si(Parameter::Viscous, self.viscous, self.zeta, viscous_ratio)?;
-        let alpha = in_si(Parameter::Torque, self.torque, self.alpha, friction_of_torque)?;
+        let alpha = in_si(
+            Parameter::Torque,
+            self.torque,
+            self.alpha,
+            friction_of_torque,
+        )?;
         if self.beta != 0.0 && self.frequency_ratio == 0.0 {
             return Err(CaseError::NoFrequency(self.beta));
         }
@@ -303,15 +321,19 @@ impl Case {
         }
     }
 
-    /// The speed at which a restitution is stated, in units of L omega; `None` where none is stated.
+    /// The speed at which a restitution is stated, in units of L omega; `None` where none is
+    /// stated.
     fn stated_speed(&self) -> Option<f64> {
-        let Design { length, gravity, .. } = self.design;
+        let Design {
+            length, gravity, ..
+        } = self.design;
         let speed = self.at_speed?;
         Some(self.speed_unit.dimensionless(speed, length, gravity))
     }
 
-    /// The speed of the first touch from this start, by the energy of the swing: without damping and with the pivot at rest.
-    /// Nothing where no barrier is reached, or where the start is inside one.
+    /// The speed of the first touch from this start, by the energy of the swing: without damping
+    /// and with the pivot at rest. Nothing where no barrier is reached, or where the start is
+    /// inside one.
     fn touch_speed(&self, start: Start) -> Option<f64> {
         let Start { x, velocity } = start;
         if self.left.is_some_and(|left| x < left) || self.right.is_some_and(|right| x > right) {
@@ -329,7 +351,11 @@ impl Case {
             let barrier = barrier.filter(|barrier| reached(*barrier))?;
             Some(square(barrier).sqrt()).filter(|speed| *speed > 0.0)
         };
-        let rises = if velocity == 0.0 { x.sin() < 0.0 } else { velocity > 0.0 };
+        let rises = if velocity == 0.0 {
+            x.sin() < 0.0
+        } else {
+            velocity > 0.0
+        };
         let (first, second) = if rises {
             (self.right, self.left)
         } else {
@@ -361,17 +387,24 @@ impl Case {
         let scales = self.scales(model.gamma, start);
         // Where gamma is zero there is no barrier to touch.
         let touch_speed = self.touch_speed(start).filter(|_| model.gamma != 0.0);
-        let form = |of: ContactDamping, scales: &ContactScales| Some(damping.in_form(of, scales).ok()?.value());
+        let form = |of: ContactDamping, scales: &ContactScales| {
+            Some(damping.in_form(of, scales).ok()?.value())
+        };
         let at_touch = ContactScales {
             speed: touch_speed,
             ..scales
         };
-        let of_touch = |mu| ContactDamping::Mu(mu).in_form(ContactDamping::Restitution(0.0), &at_touch);
+        let of_touch =
+            |mu| ContactDamping::Mu(mu).in_form(ContactDamping::Restitution(0.0), &at_touch);
         let either = |si: Option<f64>, own, number| if si.is_some() { own } else { number };
         Ok(Dissipation {
             contact: damping,
             mu: model.mu,
-            mu_over_gamma: if model.mu == 0.0 { 0.0 } else { model.mu / model.gamma },
+            mu_over_gamma: if model.mu == 0.0 {
+                0.0
+            } else {
+                model.mu / model.gamma
+            },
             lambda: match damping {
                 ContactDamping::Lambda(lambda) => Some(lambda),
                 _ => units.and_then(|_| form(ContactDamping::Lambda(0.0), &scales)),
@@ -392,10 +425,14 @@ impl Case {
             restitution: of_touch(model.mu).ok().map(ContactDamping::value),
             viscous_form: either(self.viscous, Parameter::Viscous, Parameter::Zeta),
             zeta: model.zeta,
-            viscous: self.viscous.or_else(|| Some(viscous_coefficient(model.zeta, units?))),
+            viscous: self
+                .viscous
+                .or_else(|| Some(viscous_coefficient(model.zeta, units?))),
             friction_form: either(self.torque, Parameter::Torque, Parameter::Alpha),
             alpha: model.alpha,
-            torque: self.torque.or_else(|| Some(torque_of_friction(model.alpha, units?))),
+            torque: self
+                .torque
+                .or_else(|| Some(torque_of_friction(model.alpha, units?))),
         })
     }
 }
@@ -410,7 +447,10 @@ mod tests {
         let (model, start) = Case::default().motion().unwrap();
         assert!((model.gamma / Model::default().gamma - 1.0).abs() < 1e-15);
         assert_eq!(
-            Model { gamma: 1.0, ..model },
+            Model {
+                gamma: 1.0,
+                ..model
+            },
             Model {
                 gamma: 1.0,
                 ..Model::default()
@@ -433,7 +473,11 @@ mod tests {
             let mut case = usual;
             case.set(parameter, 0.25);
             assert_eq!(case.get(parameter), Some(0.25), "{parameter}");
-            assert_ne!(case.motion().unwrap(), usual.motion().unwrap(), "{parameter}");
+            assert_ne!(
+                case.motion().unwrap(),
+                usual.motion().unwrap(),
+                "{parameter}"
+            );
         }
     }
 
@@ -456,7 +500,8 @@ mod tests {
                 ..Case::default()
             };
             let (model, start) = case.motion().unwrap();
-            let motion = simulate(&model, start, Integrator::RungeKutta, &Settings::default()).unwrap();
+            let motion =
+                simulate(&model, start, Integrator::RungeKutta, &Settings::default()).unwrap();
             let found = case.dissipation(None).unwrap().touch_speed.unwrap();
             assert!(
                 (found / motion.impacts[0].speed_in - 1.0).abs() < 1e-8,

@@ -7,10 +7,11 @@
 //! return    x = A cos(omega (t - t2) + acos(x_c/A))                                   (16)
 //! ```
 //!
-//! In: a [`Setup`]. Out: an [`Impact`]: one column for each reading. The paper's comes first, with its one-term swing by
-//! [`method::solve`] and its line by [`three_phases`], then the same with the speed from the energy, then the derived one, all
-//! harmonics and the best contact law; each judged by Runge-Kutta on the equation as it stands. Without an order or a method the
-//! derived column has the first of a ladder that passes: what it tried is told.
+//! In: a [`Setup`]. Out: an [`Impact`]: one column for each reading. The paper's comes first, with
+//! its one-term swing by [`method::solve`] and its line by [`three_phases`], then the same with the
+//! speed from the energy, then the derived one, all harmonics and the best contact law; each judged
+//! by Runge-Kutta on the equation as it stands. Without an order or a method the derived column has
+//! the first of a ladder that passes: what it tried is told.
 
 use super::collision::losses;
 use super::contact::{ContactLaw, ContactRow};
@@ -36,7 +37,8 @@ pub struct Impact {
     pub letters: Letters,
     /// The equilibrium of the swing, in the unit of x.
     pub equilibrium: f64,
-    /// Where the cycle starts: the release, or the turning point of a motion released inside the barrier.
+    /// Where the cycle starts: the release, or the turning point of a motion released inside the
+    /// barrier.
     pub turning_point: f64,
     /// The derived law of the free swing in the paper's reading, where there is one.
     pub free_swing: Option<Solution>,
@@ -50,7 +52,8 @@ pub struct Impact {
     pub contact_laws: Vec<ContactRow>,
     /// lambda of the contact, zero where it loses nothing.
     pub damping: f64,
-    /// What was tried for the derived column, in order; where that has a reason not to be, it is here.
+    /// What was tried for the derived column, in order; where that has a reason not to be, it is
+    /// here.
     pub tried: Vec<Attempt>,
     /// The speed at the touch from the energy, exact for the equation.
     pub energy_speed: f64,
@@ -97,7 +100,8 @@ pub struct Column {
 /// Derives the law, builds every column and follows the true motion.
 ///
 /// # Errors
-/// A barrier out of reach, an amplitude beyond the law or the well, a stiffness that is not positive: see [`ImpactError`].
+/// A barrier out of reach, an amplitude beyond the law or the well, a stiffness that is not
+/// positive: see [`ImpactError`].
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -117,8 +121,13 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
             Ok((law, phases)) => (Some(law), phases, None),
             Err(error) => {
                 // Where the same method was asked for both, its reason is the whole reason.
-                let alone = tried.iter().all(|attempt| attempt.method == Method::LindstedtPoincare);
-                if derived.is_none() && alone && matches!(error, ImpactError::Law(_) | ImpactError::Phases(_)) {
+                let alone = tried
+                    .iter()
+                    .all(|attempt| attempt.method == Method::LindstedtPoincare);
+                if derived.is_none()
+                    && alone
+                    && matches!(error, ImpactError::Law(_) | ImpactError::Phases(_))
+                {
                     return Err(error);
                 }
                 (None, vec![], Some(error.to_string()))
@@ -165,7 +174,11 @@ fn methods_to_try(setup: &Setup) -> Vec<Method> {
     match (setup.method, setup.order) {
         (Some(method), _) => vec![method],
         (None, Some(_)) => vec![Method::LindstedtPoincare],
-        (None, None) => vec![Method::LindstedtPoincare, Method::HarmonicBalance, Method::Exact],
+        (None, None) => vec![
+            Method::LindstedtPoincare,
+            Method::HarmonicBalance,
+            Method::Exact,
+        ],
     }
 }
 
@@ -184,7 +197,9 @@ pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhase
         return Err(SetupError::LosesEnergy.into());
     }
     let swing = &equations.swing;
-    if equations.equilibrium != 0.0 || !is_odd(&swing.force, swing.coordinate).map_err(SetupError::from)? {
+    if equations.equilibrium != 0.0
+        || !is_odd(&swing.force, swing.coordinate).map_err(SetupError::from)?
+    {
         return Err(SetupError::NotOdd {
             force: swing.force.to_string(),
         }
@@ -208,7 +223,10 @@ pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhase
         true => Some(amplitude),
         false => values.get(&name).copied(),
     };
-    let squared = law.law.frequency_squared().map(|squared| law.evaluate(squared, &known));
+    let squared = law
+        .law
+        .frequency_squared()
+        .map(|squared| law.evaluate(squared, &known));
     let swing = Swing {
         amplitude,
         barrier: collision.barrier,
@@ -224,7 +242,8 @@ pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhase
         (Reading::Energy, ContactSpeed::Energy),
     ];
     let side = setup.side.sign();
-    let phases = readings.map(|(reading, speed)| Ok((reading, three_phases(&swing, speed)?.moved(side, 0.0))));
+    let phases = readings
+        .map(|(reading, speed)| Ok((reading, three_phases(&swing, speed)?.moved(side, 0.0))));
     Ok((law, phases.into_iter().collect::<Result<_, PhasesError>>()?))
 }
 
@@ -242,14 +261,18 @@ pub struct Quantity {
 impl Quantity {
     /// The relative error of each column, `closed form / runge_kutta - 1`.
     pub fn errors(&self) -> impl Iterator<Item = f64> + '_ {
-        self.closed_forms.iter().map(|value| value / self.runge_kutta - 1.0)
+        self.closed_forms
+            .iter()
+            .map(|value| value / self.runge_kutta - 1.0)
     }
 }
 
-/// A motion over one period, for drawing: time in units of 1/omega, displacement and depth in rad, velocity in rad times omega.
+/// A motion over one period, for drawing: time in units of 1/omega, displacement and depth in rad,
+/// velocity in rad times omega.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampledMotion {
-    /// Time, displacement, velocity; the contact, short as it is, has as many points as either flight.
+    /// Time, displacement, velocity; the contact, short as it is, has as many points as either
+    /// flight.
     pub samples: Vec<(f64, f64, f64)>,
     /// Time since touch and depth.
     pub contact: Vec<(f64, f64)>,
@@ -283,7 +306,9 @@ impl Impact {
     pub fn paths(&self, points: usize) -> Vec<SampledMotion> {
         let sign = self.setup.side.sign();
         let path = |[touch, exit, end]: [f64; 3], at: &dyn Fn(f64) -> (f64, f64)| {
-            let between = |from: f64, to: f64| (0..=points).map(move |k| from + (to - from) * k as f64 / points as f64);
+            let between = |from: f64, to: f64| {
+                (0..=points).map(move |k| from + (to - from) * k as f64 / points as f64)
+            };
             let times = between(0.0, touch)
                 .chain(between(touch, exit))
                 .chain(between(exit, end));
@@ -312,9 +337,19 @@ impl Impact {
 
     /// Speed, penetration and duration of the contact, the time to it, and the period.
     pub fn quantities(&self) -> [Quantity; 5] {
-        const NAMES: [&str; 5] = ["time to contact", "speed", "penetration", "duration", "period"];
+        const NAMES: [&str; 5] = [
+            "time to contact",
+            "speed",
+            "penetration",
+            "duration",
+            "period",
+        ];
         let truth = self.truth.quantities();
-        let columns: Vec<[f64; 5]> = self.columns.iter().map(|column| column.phases.quantities()).collect();
+        let columns: Vec<[f64; 5]> = self
+            .columns
+            .iter()
+            .map(|column| column.phases.quantities())
+            .collect();
         std::array::from_fn(|index| Quantity {
             name: NAMES[index],
             runge_kutta: truth[index],
@@ -322,8 +357,8 @@ impl Impact {
         })
     }
 
-    /// Restitution and speed out of a contact that loses energy, which are judged, and what it loses per unit of mass, which is not: of
-    /// a small loss no digits are left.
+    /// Restitution and speed out of a contact that loses energy, which are judged, and what it
+    /// loses per unit of mass, which is not: of a small loss no digits are left.
     pub fn losses(&self) -> Option<([Quantity; 2], Quantity)> {
         self.setup.loss?;
         let truth = losses([self.truth.touch.v, -self.truth.exit.v]);
@@ -348,8 +383,8 @@ impl Impact {
         }
     }
 
-    /// The largest deviation of a column in approach, contact and return, each on its own clock: of the flights over the
-    /// amplitude, of the contact over the true depth.
+    /// The largest deviation of a column in approach, contact and return, each on its own clock: of
+    /// the flights over the amplitude, of the contact over the true depth.
     pub fn deviations(&self, column: &Column) -> [f64; 3] {
         let [approach, contact, back] = column.deviation.aligned;
         [
@@ -359,14 +394,15 @@ impl Impact {
         ]
     }
 
-    /// The verdict on each column: every quantity within the tolerance, and the deviation in every phase.
+    /// The verdict on each column: every quantity within the tolerance, and the deviation in every
+    /// phase.
     pub fn verdicts(&self, tolerance: f64) -> Vec<Verdict> {
         let passes = |index| Verdict::of(self.shortcomings(index, tolerance).is_empty());
         (0..self.columns.len()).map(passes).collect()
     }
 
-    /// What lies beyond the tolerance in a column, by its place: the quantities with their errors, and what of the closed form
-    /// they come from.
+    /// What lies beyond the tolerance in a column, by its place: the quantities with their errors,
+    /// and what of the closed form they come from.
     pub fn shortcomings(&self, index: usize, tolerance: f64) -> Vec<Shortcoming> {
         let column = &self.columns[index];
         let one_cosine = || {

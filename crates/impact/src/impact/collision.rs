@@ -5,9 +5,10 @@
 //! v^2/2 = V(x_r) - V(x_c) = - int_(x_r)^(x_c) f                  the speed at the touch, from the energy
 //! ```
 //!
-//! In: the two forces as closures, release and barrier in the units of the equation. Out: a [`Collision`], the question that
-//! closed forms and judge answer, and the speed at the touch; or why there is no touch. The barrier stands on the right: a
-//! motion to the left is looked at from the other side.
+//! In: the two forces as closures, release and barrier in the units of the equation. Out: a
+//! [`Collision`], the question that closed forms and judge answer, and the speed at the touch; or
+//! why there is no touch. The barrier stands on the right: a motion to the left is looked at from
+//! the other side.
 
 use thiserror::Error;
 
@@ -15,7 +16,8 @@ use super::linearisation::work;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
 use crate::numeric::ode::root::find_root;
 
-/// x'' + f(x) + gamma F(x - x_c) = 0, released at rest from x = release towards the barrier at x_c, to the right of it.
+/// x'' + f(x) + gamma F(x - x_c) = 0, released at rest from x = release towards the barrier at x_c,
+/// to the right of it.
 #[derive(Clone, Copy)]
 pub struct Collision<'a> {
     /// Where it is released, in the unit of x.
@@ -27,13 +29,16 @@ pub struct Collision<'a> {
     /// f(x), the force of the swing without the barrier.
     pub restoring_force: &'a dyn Fn(f64) -> f64,
     /// F(depth), the elastic force of the barrier per unit of gamma, such as
-    /// [`hertz::elastic_force`](super::hertz::elastic_force); asked for depths of at least zero only.
+    /// [`hertz::elastic_force`](super::hertz::elastic_force); asked for depths of at least zero
+    /// only.
     pub elastic_force: &'a dyn Fn(f64) -> f64,
-    /// lambda >= 0: the barrier pushes with gamma F(d) (1 + lambda d'), and never pulls; zero where nothing is lost in it.
+    /// lambda >= 0: the barrier pushes with gamma F(d) (1 + lambda d'), and never pulls; zero where
+    /// nothing is lost in it.
     pub damping: f64,
 }
 
-/// Restitution, speed out and energy lost per unit of mass, of a contact with these speeds in and out.
+/// Restitution, speed out and energy lost per unit of mass, of a contact with these speeds in and
+/// out.
 pub(super) fn losses([inwards, outwards]: [f64; 2]) -> [f64; 3] {
     let lost = 0.5 * (inwards - outwards) * (inwards + outwards);
     [outwards / inwards, outwards, lost]
@@ -134,7 +139,11 @@ impl CollisionError {
                 release: x(release),
                 barrier: x(barrier),
             },
-            Self::Inside { release, barrier, what } => Self::Inside {
+            Self::Inside {
+                release,
+                barrier,
+                what,
+            } => Self::Inside {
                 release: x(release),
                 barrier: x(barrier),
                 what,
@@ -172,7 +181,8 @@ impl Collision<'_> {
         if !barrier.is_finite() {
             return Err(CollisionError::Barrier(barrier));
         }
-        // As far as a symmetric swing goes, or for a release on the way to the barrier no further than that.
+        // As far as a symmetric swing goes, or for a release on the way to the barrier no further
+        // than that.
         let furthest = release.abs();
         if barrier >= furthest && release < 0.0 || release > 0.0 && barrier > release {
             return Err(CollisionError::NeverReaches {
@@ -190,11 +200,13 @@ impl Collision<'_> {
         Ok(())
     }
 
-    /// The turning point on the free side of a motion released at rest at `inside`, beyond the barrier: where
-    /// V(x) - V(x_c) = V(inside) - V(x_c) + gamma int_0^(inside - x_c) F. The release of this collision is not asked.
+    /// The turning point on the free side of a motion released at rest at `inside`, beyond the
+    /// barrier: where V(x) - V(x_c) = V(inside) - V(x_c) + gamma int_0^(inside - x_c) F. The
+    /// release of this collision is not asked.
     ///
     /// # Errors
-    /// [`CollisionError::Inside`] where the barrier does not push it out, or the swing does not bring it back.
+    /// [`CollisionError::Inside`] where the barrier does not push it out, or the swing does not
+    /// bring it back.
     pub(super) fn turning_point(&self, inside: f64) -> Result<f64, CollisionError> {
         let &Collision {
             barrier,
@@ -227,7 +239,8 @@ impl Collision<'_> {
                 break;
             }
             if value >= 0.0 {
-                return find_root(missing, far, near).map_err(|_| stays("does not come to rest on the other side"));
+                return find_root(missing, far, near)
+                    .map_err(|_| stays("does not come to rest on the other side"));
             }
             step *= 1.1;
             (near, far) = (far, far - step);
@@ -235,7 +248,8 @@ impl Collision<'_> {
         Err(stays("does not come to rest on the other side"))
     }
 
-    /// The speed sqrt(2 (V(x_r) - V(x_c))) at the barrier, from the energy, in the units of x and time of the equation.
+    /// The speed sqrt(2 (V(x_r) - V(x_c))) at the barrier, from the energy, in the units of x and
+    /// time of the equation.
     ///
     /// # Errors
     /// [`CollisionError::OutsideTheWell`] where the released pendulum does not swing that far.
@@ -263,12 +277,18 @@ impl Collision<'_> {
             restoring_force,
             ..
         } = self;
-        // It starts only if the force drives it; a force of rounding size is the unstable equilibrium itself.
+        // It starts only if the force drives it; a force of rounding size is the unstable
+        // equilibrium itself.
         let typical = (1..=16)
-            .map(|part| restoring_force(release + (barrier - release) * f64::from(part) / 16.0).abs())
+            .map(|part| {
+                restoring_force(release + (barrier - release) * f64::from(part) / 16.0).abs()
+            })
             .fold(0.0, f64::max);
         if restoring_force(release) > -1e-12 * typical {
-            return Err(CollisionError::OutsideTheWell { release, at: release });
+            return Err(CollisionError::OutsideTheWell {
+                release,
+                at: release,
+            });
         }
         let parts = 32;
         let mut gained = 0.0;

@@ -1,7 +1,7 @@
 //! Every method on one impact: a row each, judged against the same true motion.
 //!
-//! In: a [`Setup`] without a method. Out: the paper's two readings, then each method of `derive` at its lowest order that passes,
-//! else at its best, and the reason of each that has no row.
+//! In: a [`Setup`] without a method. Out: the paper's two readings, then each method of `derive` at
+//! its lowest order that passes, else at its best, and the reason of each that has no row.
 
 use super::closed_form::{Reading, paper};
 use super::judge::TrueImpact;
@@ -23,9 +23,11 @@ pub struct ImpactComparison {
     pub letters: Letters,
     /// The equilibrium of the swing, in the unit of x.
     pub equilibrium: f64,
-    /// Where the cycle starts: the release, or the turning point of a motion released inside the barrier.
+    /// Where the cycle starts: the release, or the turning point of a motion released inside the
+    /// barrier.
     pub turning_point: f64,
-    /// The rows that have numbers: the paper's readings first, then the methods in the order of [`Method::ALL`].
+    /// The rows that have numbers: the paper's readings first, then the methods in the order of
+    /// [`Method::ALL`].
     pub rows: Vec<ImpactRow>,
     /// The others, with the reason of each.
     pub refused: Vec<(ImpactMethod, String)>,
@@ -77,8 +79,8 @@ pub struct ImpactRow {
     pub phases: ThreePhases,
     /// The relative errors of time to contact, speed, penetration, duration and period.
     pub errors: [f64; 5],
-    /// The largest deviation in approach, contact and return, each on its own clock: of the flights over the amplitude, of the
-    /// contact over the depth.
+    /// The largest deviation in approach, contact and return, each on its own clock: of the flights
+    /// over the amplitude, of the contact over the depth.
     pub deviations: [f64; 3],
 }
 
@@ -152,7 +154,9 @@ pub fn compare(setup: Setup) -> Result<ImpactComparison, ImpactError> {
                     rows.push(row(name, order, solution.degrees, found.phases));
                 }
                 (None, tried) => {
-                    let reason = tried.iter().find_map(|attempt| attempt.error.as_ref().err());
+                    let reason = tried
+                        .iter()
+                        .find_map(|attempt| attempt.error.as_ref().err());
                     refused.push((name, reason.cloned().unwrap_or_default()));
                 }
             }

@@ -1,7 +1,9 @@
-//! The derived reading: approach and return are a derived motion with all its harmonics, and the joins follow from it.
+//! The derived reading: approach and return are a derived motion with all its harmonics, and the
+//! joins follow from it.
 //!
-//! In: the swing and its values, a release, a barrier, a method with its order. Out: three phases, continuous at every join in
-//! place and speed. With X the derived displacement from its turning point at t = 0, even in t:
+//! In: the swing and its values, a release, a barrier, a method with its order. Out: three phases,
+//! continuous at every join in place and speed. With X the derived displacement from its turning
+//! point at t = 0, even in t:
 //!
 //! ```text
 //! approach   x = X(t)                X(t1) = x_c, the first root         v = |X'(t1)|
@@ -9,11 +11,11 @@
 //! return     x = X(t - t3)           t3 = t2 + t1, the turning point after the impact and the period
 //! ```
 //!
-//! A contact that loses energy is left with less speed: then X of the return is the motion of the amplitude that has this speed at
-//! the barrier, and t3 - t2 the time it takes.
+//! A contact that loses energy is left with less speed: then X of the return is the motion of the
+//! amplitude that has this speed at the barrier, and t3 - t2 the time it takes.
 //!
-//! The swing is derived as it is released, from its upper turning point: where the release is the lower one, it is the equation
-//! of -x that is derived.
+//! The swing is derived as it is released, from its upper turning point: where the release is the
+//! lower one, it is the equation of -x that is derived.
 
 use std::f64::consts::PI;
 
@@ -109,8 +111,9 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// Derives the swing released at rest from `release`; `sign` is 1 where that is its upper turning point, -1 where it is the
-    /// lower one. `equilibrium` is that of `swing` at these values.
+    /// Derives the swing released at rest from `release`; `sign` is 1 where that is its upper
+    /// turning point, -1 where it is the lower one. `equilibrium` is that of `swing` at these
+    /// values.
     ///
     /// # Errors
     /// [`NoFlight`].
@@ -121,7 +124,8 @@ impl Flight {
     ) -> Result<Self, NoFlight> {
         let swing = &equations.swing;
         let turned = if sign < 0.0 { turned(swing)? } else { None };
-        // A swing between barriers is free: what drives it is refused by the method that knows free motions alone.
+        // A swing between barriers is free: what drives it is refused by the method that knows free
+        // motions alone.
         let options = &method::Options {
             method: options.method.or(Some(Method::LindstedtPoincare)),
             ..options.clone()
@@ -133,8 +137,11 @@ impl Flight {
             AmplitudeConvention::Initial => distance,
             AmplitudeConvention::FirstHarmonic => {
                 // Of the size of the distance: the other harmonics are smaller than the first.
-                let short = |amplitude| motion_at(amplitude).map_or(f64::NAN, |motion| motion.at(0.0) - from);
-                find_root(short, 0.25 * distance, 2.0 * distance).map_err(|_| NoFlight::Amplitude)?
+                let short = |amplitude| {
+                    motion_at(amplitude).map_or(f64::NAN, |motion| motion.at(0.0) - from)
+                };
+                find_root(short, 0.25 * distance, 2.0 * distance)
+                    .map_err(|_| NoFlight::Amplitude)?
             }
         };
         let motion = motion_at(amplitude)?;
@@ -160,7 +167,12 @@ impl Flight {
     ///
     /// # Errors
     /// [`NoFlight::WayBack`]; the method has no motion at that amplitude.
-    pub(super) fn passing(&self, equations: &Equations, barrier: f64, speed: f64) -> Result<Self, NoFlight> {
+    pub(super) fn passing(
+        &self,
+        equations: &Equations,
+        barrier: f64,
+        speed: f64,
+    ) -> Result<Self, NoFlight> {
         let of = |amplitude: f64| -> Result<Self, NoFlight> {
             Ok(Self {
                 amplitude,
@@ -173,7 +185,8 @@ impl Flight {
             // Too small a swing does not come as far.
             touched.map_or(-1.0, |(_, found)| (found / speed).powi(2) - 1.0)
         };
-        let amplitude = find_root(excess, 0.0, self.amplitude).map_err(|_| NoFlight::WayBack(speed))?;
+        let amplitude =
+            find_root(excess, 0.0, self.amplitude).map_err(|_| NoFlight::WayBack(speed))?;
         of(amplitude)
     }
 
@@ -190,10 +203,13 @@ impl Flight {
         };
         let displacement = self.motion.displacement();
         let number = |series: FourierSeries<Doubles>| series.mean().0;
-        // A single wave has the closed form of the paper, more waves have a root in the half period.
+        // A single wave has the closed form of the paper, more waves have a root in the half
+        // period.
         let cosine = (place - number(displacement.cosine(0))) / number(displacement.cosine(1));
         let time = match displacement.highest_harmonic() {
-            1 if displacement.is_even() && cosine.abs() <= 1.0 => cosine.acos() / self.motion.frequency(),
+            1 if displacement.is_even() && cosine.abs() <= 1.0 => {
+                cosine.acos() / self.motion.frequency()
+            }
             _ => find_root(|t| self.motion.at(t) - place, 0.0, half).map_err(never)?,
         };
         Ok((time, self.motion.velocity(time).abs()))
@@ -204,19 +220,26 @@ impl Flight {
         let displacement = self.motion.displacement();
         let part = |series: FourierSeries<Doubles>| self.sign * series.mean().0;
         let wave = |k: usize| {
-            let amplitude = Complex64::new(part(displacement.cosine(k)), -part(displacement.sine(k)));
+            let amplitude =
+                Complex64::new(part(displacement.cosine(k)), -part(displacement.sine(k)));
             (amplitude != Complex64::ZERO).then_some((k as u32, amplitude))
         };
         Form::Harmonics {
             centre: part(displacement.cosine(0)),
             frequency: self.motion.frequency(),
-            harmonics: (1..=displacement.highest_harmonic()).filter_map(wave).collect(),
+            harmonics: (1..=displacement.highest_harmonic())
+                .filter_map(wave)
+                .collect(),
         }
     }
 }
 
 /// The motion of a law at this amplitude.
-fn motion_at(solution: &Solution, equations: &Equations, amplitude: f64) -> Result<Motion, NoFlight> {
+fn motion_at(
+    solution: &Solution,
+    equations: &Equations,
+    amplitude: f64,
+) -> Result<Motion, NoFlight> {
     let symbol = solution.amplitude.symbol();
     let (_, mut values) = equations.values.split(&[symbol]);
     let exact = from_f64(amplitude).ok_or(NoFlight::Amplitude)?;
@@ -231,9 +254,11 @@ fn turned(swing: &Oscillator) -> Result<Option<Oscillator>, NoFlight> {
         return Ok(None);
     }
     let acceleration = x.derivative().derivative();
-    let turned = swing
-        .residual
-        .substitute_all(&[x, acceleration].map(|name| (name, -&Expr::from(name))).into())?;
+    let turned = swing.residual.substitute_all(
+        &[x, acceleration]
+            .map(|name| (name, -&Expr::from(name)))
+            .into(),
+    )?;
     let equation = Equation {
         left: -&turned,
         right: Expr::zero(),
@@ -282,7 +307,8 @@ impl DerivedContact {
     }
 }
 
-/// The three phases: the flight, the contact on that side of the barrier entered at this time and speed, the flight backwards.
+/// The three phases: the flight, the contact on that side of the barrier entered at this time and
+/// speed, the flight backwards.
 ///
 /// # Errors
 /// [`NoFlight`] where a contact that loses energy has no way back.

@@ -1,7 +1,9 @@
-//! What damps a pendulum and its contact: each damping in every form in which it may be given, and which form is held fixed.
+//! What damps a pendulum and its contact: each damping in every form in which it may be given, and
+//! which form is held fixed.
 //!
-//! In: a number in one form, and the pendulum in SI units. Out: the number of equation (7), and from it every other form. With
-//! d = L (x - x_c) the depth in m, v the dimensionless speed at a touch, omega^2 = g/L:
+//! In: a number in one form, and the pendulum in SI units. Out: the number of equation (7), and
+//! from it every other form. With d = L (x - x_c) the depth in m, v the dimensionless speed at a
+//! touch, omega^2 = g/L:
 //!
 //! ```text
 //! contact   F = (k + c d') d^(3/2)            c = mu m sqrt(g)/L^2, N s/m^(5/2)       the same mu whatever gamma
@@ -11,9 +13,10 @@
 //! friction  a constant torque against the motion:  alpha = torque/(m g L)
 //! ```
 //!
-//! (K. H. Hunt and F. R. E. Crossley, *J. Appl. Mech.* 42 (1975) 440 for the contact.) alpha is the dimensionless coefficient of
-//! friction. A bearing of radius r with a coefficient f of its own has the torque f m g r, alpha = f r/L, where the weight alone
-//! loads it; a swing loads it with m g (cos x + x'^2) and more, so there is no key for f.
+//! (K. H. Hunt and F. R. E. Crossley, *J. Appl. Mech.* 42 (1975) 440 for the contact.) alpha is the
+//! dimensionless coefficient of friction. A bearing of radius r with a coefficient f of its own has
+//! the torque f m g r, alpha = f r/L, where the weight alone loads it; a swing loads it with m g
+//! (cos x + x'^2) and more, so there is no key for f.
 
 use thiserror::Error;
 
@@ -40,7 +43,8 @@ pub enum ContactDamping {
 /// The unit in which the speed of a restitution is stated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SpeedUnit {
-    /// L omega = sqrt(g L), the unit of equation (7): the speed is an angular velocity in rad times omega.
+    /// L omega = sqrt(g L), the unit of equation (7): the speed is an angular velocity in rad times
+    /// omega.
     #[default]
     RadOmega,
     /// m/s, that of the bob.
@@ -56,7 +60,8 @@ impl SpeedUnit {
         }
     }
 
-    /// A speed in this unit, of a pendulum of this length in m under this gravity in m/s^2, in units of L omega.
+    /// A speed in this unit, of a pendulum of this length in m under this gravity in m/s^2, in
+    /// units of L omega.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -84,7 +89,8 @@ pub struct ContactScales {
     pub length: f64,
     /// Acceleration of gravity, m/s^2.
     pub gravity: f64,
-    /// The speed at which a restitution is stated, in units of L omega; nothing where none is known.
+    /// The speed at which a restitution is stated, in units of L omega; nothing where none is
+    /// known.
     pub speed: Option<f64>,
 }
 
@@ -113,7 +119,9 @@ pub enum DampingError {
     #[error("[contact] at_speed must be a positive number, not {0}")]
     Speed(f64),
     /// A lambda beyond doubles.
-    #[error("[contact] lambda = {0} makes no finite mu: it is in s/m, some hundredths for a hard material")]
+    #[error(
+        "[contact] lambda = {0} makes no finite mu: it is in s/m, some hundredths for a hard material"
+    )]
     Lambda(f64),
     /// A damping beyond doubles.
     #[error("{key} = {value:e} makes no finite number of equation (7)")]
@@ -172,7 +180,8 @@ impl ContactDamping {
     /// mu of equation (7).
     ///
     /// # Errors
-    /// [`DampingError`]: a damping that is negative or too large; a restitution that is none, or at no speed.
+    /// [`DampingError`]: a damping that is negative or too large; a restitution that is none, or at
+    /// no speed.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -213,7 +222,9 @@ impl ContactDamping {
                 let product = damping_for(e).map_err(|_| DampingError::Restitution(e))?;
                 gamma * (product / scales.stated_speed()?)
             }
-            Self::Coefficient(coefficient) => coefficient * length * length / (mass * gravity.sqrt()),
+            Self::Coefficient(coefficient) => {
+                coefficient * length * length / (mass * gravity.sqrt())
+            }
         };
         match (mu.is_finite(), self) {
             (true, _) => Ok(mu),
@@ -243,9 +254,13 @@ impl ContactDamping {
             Self::Restitution(_) => {
                 let (key, value) = (Parameter::Mu, mu);
                 let product = ratio * scales.stated_speed()?;
-                Self::Restitution(restitution(product).map_err(|_| DampingError::Negative { key, value })?)
+                Self::Restitution(
+                    restitution(product).map_err(|_| DampingError::Negative { key, value })?,
+                )
             }
-            Self::Coefficient(_) => Self::Coefficient(mu * mass * gravity.sqrt() / (length * length)),
+            Self::Coefficient(_) => {
+                Self::Coefficient(mu * mass * gravity.sqrt() / (length * length))
+            }
         })
     }
 }
@@ -265,7 +280,8 @@ pub fn viscous_ratio(coefficient: f64, units: &Units) -> f64 {
     0.5 * coefficient * units.time() / units.mass
 }
 
-/// The coefficient c = 2 zeta m omega of a force against the velocity of the bob, N s/m, that has this damping ratio.
+/// The coefficient c = 2 zeta m omega of a force against the velocity of the bob, N s/m, that has
+/// this damping ratio.
 pub fn viscous_coefficient(zeta: f64, units: &Units) -> f64 {
     2.0 * zeta * units.mass / units.time()
 }
@@ -298,7 +314,8 @@ pub struct Dissipation {
     pub at_speed: Option<f64>,
     /// The speed in m/s, if the file states it so.
     pub at_speed_si: Option<f64>,
-    /// The speed of the first touch without damping, in units of L omega; nothing where no barrier is reached.
+    /// The speed of the first touch without damping, in units of L omega; nothing where no barrier
+    /// is reached.
     pub touch_speed: Option<f64>,
     /// The restitution at that speed.
     pub restitution: Option<f64>,
@@ -317,11 +334,16 @@ pub struct Dissipation {
 }
 
 impl Dissipation {
-    /// The speed at which a given restitution is stated, with its unit: `1 m/s, 1.22347 rad*omega` where that is how it is stated.
+    /// The speed at which a given restitution is stated, with its unit: `1 m/s, 1.22347 rad*omega`
+    /// where that is how it is stated.
     pub fn at_speed_in_words(&self) -> Option<String> {
         let own = format!("{} {}", decimal(self.at_speed?), SpeedUnit::RadOmega.name());
         Some(match self.at_speed_si {
-            Some(speed) => format!("{} {}, {own}", decimal(speed), SpeedUnit::MetresPerSecond.name()),
+            Some(speed) => format!(
+                "{} {}, {own}",
+                decimal(speed),
+                SpeedUnit::MetresPerSecond.name()
+            ),
             None => own,
         })
     }
@@ -414,7 +436,9 @@ mod tests {
         }
         // m L^2 x'' = -c (L x') L, with the time in s.
         let torque = 0.3 * speed * 0.25;
-        assert!((2.0 * viscous_ratio(0.3, &units) * rate * units.energy() / torque - 1.0).abs() < 1e-13);
+        assert!(
+            (2.0 * viscous_ratio(0.3, &units) * rate * units.energy() / torque - 1.0).abs() < 1e-13
+        );
     }
 
     #[test]
@@ -428,7 +452,10 @@ mod tests {
         };
         for (damping, words) in [
             (ContactDamping::Lambda(-1.0), "[contact] lambda must"),
-            (ContactDamping::Coefficient(f64::NAN), "[contact] damping must"),
+            (
+                ContactDamping::Coefficient(f64::NAN),
+                "[contact] damping must",
+            ),
             (ContactDamping::Restitution(0.0), "above 0"),
             (ContactDamping::Restitution(0.5), "at_speed"),
             (ContactDamping::MuOverGamma(1e305), "no finite"),

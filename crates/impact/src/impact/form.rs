@@ -1,7 +1,7 @@
 //! The closed form of a phase: a function of the time on its clock, with its terms.
 //!
-//! In: the numbers of a wave, of a sum of harmonics or of a contact. Out: displacement and velocity at any time, the same in another
-//! coordinate, and the terms that are worth writing.
+//! In: the numbers of a wave, of a sum of harmonics or of a contact. Out: displacement and velocity
+//! at any time, the same in another coordinate, and the terms that are worth writing.
 //!
 //! ```text
 //! cosine        x = A cos(omega s + phi)                       harmonics   x = c + Re sum_k Z_k exp(i k omega s)
@@ -26,7 +26,8 @@ pub enum Form {
         /// Phase, rad.
         phase: f64,
     },
-    /// x = centre + Re[amplitude exp(i frequency s)] = centre + Re(amplitude) cos(..) - Im(amplitude) sin(..).
+    /// x = centre + Re[amplitude exp(i frequency s)] = centre + Re(amplitude) cos(..) -
+    /// Im(amplitude) sin(..).
     Oscillation {
         /// The point oscillated about.
         centre: f64,
@@ -75,8 +76,9 @@ impl Form {
     /// How close the written series of a contact comes to the whole one, as a part of the depth.
     pub const WRITTEN_CONTACT: f64 = 1e-4;
 
-    /// The terms of a sum that are worth writing, in their order, with their coefficients: those that six digits of a flight feel,
-    /// or a contact to [`Form::WRITTEN_CONTACT`]; none for the forms of one wave.
+    /// The terms of a sum that are worth writing, in their order, with their coefficients: those
+    /// that six digits of a flight feel, or a contact to [`Form::WRITTEN_CONTACT`]; none for the
+    /// forms of one wave.
     pub fn felt_terms(&self) -> Vec<(Term, f64)> {
         let felt = match self {
             Self::Contact { .. } => 0.5 * Self::WRITTEN_CONTACT,
@@ -88,7 +90,10 @@ impl Form {
         let (frequency, parabola, sum) = (self.frequency(), self.parabola(), self.harmonics());
         let waves = sum.iter().flat_map(|&(number, amplitude)| {
             let frequency = f64::from(number) * frequency;
-            let wave = |function| Term::Wave { function, frequency };
+            let wave = |function| Term::Wave {
+                function,
+                frequency,
+            };
             [(wave("cos"), amplitude.re), (wave("sin"), -amplitude.im)]
         });
         // A parabola is as large as its vertex.
@@ -96,7 +101,9 @@ impl Form {
             Term::Constant | Term::Wave { .. } => value.abs(),
             Term::Parabola => value.abs() * (0.5 * PI / frequency).powi(2),
         };
-        let moving: Vec<_> = std::iter::once((Term::Parabola, parabola)).chain(waves).collect();
+        let moving: Vec<_> = std::iter::once((Term::Parabola, parabola))
+            .chain(waves)
+            .collect();
         let largest = moving.iter().map(size).fold(0.0, f64::max);
         let terms = std::iter::once((Term::Constant, self.centre())).chain(moving);
         terms.filter(|term| size(term) > felt * largest).collect()
@@ -129,10 +136,13 @@ impl Form {
         }
     }
 
-    /// Number k and complex amplitude Z_k of each harmonic: Re(Z_k) cos(k frequency s) - Im(Z_k) sin(k frequency s).
+    /// Number k and complex amplitude Z_k of each harmonic: Re(Z_k) cos(k frequency s) - Im(Z_k)
+    /// sin(k frequency s).
     pub fn harmonics(&self) -> Vec<(u32, Complex64)> {
         match self {
-            &Self::Cosine { amplitude, phase, .. } => vec![(1, amplitude * Complex64::cis(phase))],
+            &Self::Cosine {
+                amplitude, phase, ..
+            } => vec![(1, amplitude * Complex64::cis(phase))],
             &Self::Oscillation { amplitude, .. } => vec![(1, amplitude)],
             Self::Harmonics { harmonics, .. } => harmonics.clone(),
             Self::Contact { inward, depth, .. } => {
@@ -173,9 +183,16 @@ impl Form {
             } => Self::Harmonics {
                 centre: offset + sign * centre,
                 frequency: *frequency,
-                harmonics: harmonics.iter().map(|&(k, amplitude)| (k, sign * amplitude)).collect(),
+                harmonics: harmonics
+                    .iter()
+                    .map(|&(k, amplitude)| (k, sign * amplitude))
+                    .collect(),
             },
-            Self::Contact { barrier, inward, depth } => Self::Contact {
+            Self::Contact {
+                barrier,
+                inward,
+                depth,
+            } => Self::Contact {
                 barrier: offset + sign * barrier,
                 inward: sign * inward,
                 depth: depth.clone(),
@@ -223,7 +240,11 @@ impl Form {
                 }
                 (x, v)
             }
-            Self::Contact { barrier, inward, depth } => {
+            Self::Contact {
+                barrier,
+                inward,
+                depth,
+            } => {
                 let (depth, rate) = depth.at(elapsed);
                 (barrier + inward * depth, inward * rate)
             }

@@ -1,8 +1,9 @@
 //! Hertz contact of a sphere and an elastic barrier.
 //!
-//! In: stiffness and depth, or stiffness and speed of touch. Out: force and stored energy; how deep, how long. The law
-//! stands here alone: the fitted line, the equation of motion, both integrators and the books of the energy ask here. In the
-//! paper's dimensionless form, with d the depth,
+//! In: stiffness and depth, or stiffness and speed of touch. Out: force and stored energy; how
+//! deep, how long. The law stands here alone: the fitted line, the equation of motion, both
+//! integrators and the books of the energy ask here. In the paper's dimensionless form, with d the
+//! depth,
 //!
 //! ```text
 //! d'' = -gamma d^(3/2),  d(0) = 0, d'(0) = v                  energy stored: (2/5) gamma d^(5/2)
@@ -11,11 +12,12 @@
 //! gamma = (4/3) E sqrt(R) l^(5/2) / (omega^2 m L^2)                                            equation (8)
 //! ```
 //!
-//! (H. Hertz, *J. reine angew. Math.* 92 (1881) 156; W. Goldsmith, *Impact*, 1960, section 4.2.) Gravity is left out
-//! during the contact: [`true_impact`](super::true_impact()) has it.
+//! (H. Hertz, *J. reine angew. Math.* 92 (1881) 156; W. Goldsmith, *Impact*, 1960, section 4.2.)
+//! Gravity is left out during the contact: [`true_impact`](super::true_impact()) has it.
 //!
-//! In time the law is not analytic at the touch. With d = w^2 and dt = w ds it is a polynomial, and touch and release are
-//! simple zeros of w, however slow the touch (the change of variable of Levi-Civita and Sundman for collisions):
+//! In time the law is not analytic at the touch. With d = w^2 and dt = w ds it is a polynomial, and
+//! touch and release are simple zeros of w, however slow the touch (the change of variable of
+//! Levi-Civita and Sundman for collisions):
 //!
 //! ```text
 //! dw/ds = v/2,   dt/ds = w,   dv/ds = -gamma w^4              the regularised equation, d' = v
@@ -37,7 +39,8 @@ pub struct NotPositive {
     pub value: f64,
 }
 
-/// The quantities that equation (8) makes the dimensionless stiffness of, with the lever arm l = L and omega^2 = g/L.
+/// The quantities that equation (8) makes the dimensionless stiffness of, with the lever arm l = L
+/// and omega^2 = g/L.
 ///
 /// The default is a light pendulum before a soft barrier, with standard gravity to two places.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,8 +57,8 @@ pub struct Design {
     pub gravity: f64,
 }
 
-/// The stiffness gamma of the default [`Design`], by equation (8): that of every impact and every simulation for which no
-/// other is given.
+/// The stiffness gamma of the default [`Design`], by equation (8): that of every impact and every
+/// simulation for which no other is given.
 pub const DEFAULT_STIFFNESS: f64 = 30_406_664.685_165_863;
 
 impl Default for Design {
@@ -71,8 +74,8 @@ impl Default for Design {
 }
 
 impl Design {
-    /// The dimensionless stiffness gamma = (4/3) E sqrt(R) L^(3/2) / (m g), equation (8) with l = L and omega^2 =
-    /// g/L.
+    /// The dimensionless stiffness gamma = (4/3) E sqrt(R) L^(3/2) / (m g), equation (8) with l = L
+    /// and omega^2 = g/L.
     ///
     /// # Errors
     /// [`NotPositive`] names the first quantity that is not a positive number.
@@ -86,13 +89,14 @@ impl Design {
         ] {
             positive(quantity, value)?;
         }
-        let stiffness =
-            4.0 / 3.0 * self.modulus * self.radius.sqrt() * self.length.powf(1.5) / (self.mass * self.gravity);
+        let stiffness = 4.0 / 3.0 * self.modulus * self.radius.sqrt() * self.length.powf(1.5)
+            / (self.mass * self.gravity);
         positive("stiffness gamma that follows from the design", stiffness)
     }
 }
 
-/// The force of a contact of this stiffness at this depth: stiffness depth^(3/2), and none out of contact.
+/// The force of a contact of this stiffness at this depth: stiffness depth^(3/2), and none out of
+/// contact.
 pub fn force(stiffness: f64, depth: f64) -> f64 {
     if depth <= 0.0 {
         return 0.0;
@@ -100,7 +104,8 @@ pub fn force(stiffness: f64, depth: f64) -> f64 {
     stiffness * depth * depth.sqrt()
 }
 
-/// The energy that a contact of this stiffness stores at this depth: (2/5) stiffness depth^(5/2), and none out of contact.
+/// The energy that a contact of this stiffness stores at this depth: (2/5) stiffness depth^(5/2),
+/// and none out of contact.
 pub fn stored_energy(stiffness: f64, depth: f64) -> f64 {
     if depth <= 0.0 {
         return 0.0;
@@ -164,7 +169,8 @@ pub fn duration(stiffness: f64, speed: f64) -> Result<f64, NotPositive> {
 
 /// The number T v / d_max = 2 int_0^1 dy / sqrt(1 - y^(5/2)), the same for every Hertz contact.
 ///
-/// With y = q^2 and q = 1 - w^2 the integrand is smooth: 8 int_0^1 q / sqrt(1 + q + q^2 + q^3 + q^4) dw.
+/// With y = q^2 and q = 1 - w^2 the integrand is smooth: 8 int_0^1 q / sqrt(1 + q + q^2 + q^3 +
+/// q^4) dw.
 pub fn duration_factor() -> f64 {
     let integrand = |w: f64| {
         let q = 1.0 - w * w;
@@ -211,7 +217,10 @@ mod tests {
                 absolute_tolerance: 1e-12 * depth,
                 ..Options::with_tolerance(1e-12)
             };
-            let events = [Event::record(|_, _, v| v), Event::stop(|_, d, _| d).falling()];
+            let events = [
+                Event::record(|_, _, v| v),
+                Event::stop(|_, d, _| d).falling(),
+            ];
             let start = State {
                 t: 0.0,
                 x: 0.0,
@@ -255,7 +264,10 @@ mod tests {
         }
         .stiffness()
         .unwrap_err();
-        assert_eq!(refused.to_string(), "the radius must be a positive number, not 0");
+        assert_eq!(
+            refused.to_string(),
+            "the radius must be a positive number, not 0"
+        );
         assert!(
             Design {
                 modulus: 1e300,

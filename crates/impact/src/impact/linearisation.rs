@@ -1,6 +1,8 @@
-//! The straight line that replaces the elastic force during a contact, equation (15): F(depth) ~ p x - q.
+//! The straight line that replaces the elastic force during a contact, equation (15): F(depth) ~ p
+//! x - q.
 //!
-//! In: the force per unit of gamma as a closure of the depth, the greatest depth D, a [`Rule`]. Out: a [`Line`].
+//! In: the force per unit of gamma as a closure of the depth, the greatest depth D, a [`Rule`].
+//! Out: a [`Line`].
 //!
 //! With F(d) the force, the six rules ask, on 0 <= d <= D,
 //!
@@ -13,8 +15,9 @@
 //! equal duration           pi / sqrt(s) = 2 int_0^D dd / sqrt(2 int_d^D F)          half period of a spring
 //! ```
 //!
-//! The paper says "least square method" and no more; the affine line is the plain reading, so that is the default.
-//! It is not zero at touch: the acceleration jumps there by gamma times [`Line::at_touch`].
+//! The paper says "least square method" and no more; the affine line is the plain reading, so that
+//! is the default. It is not zero at touch: the acceleration jumps there by gamma times
+//! [`Line::at_touch`].
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -103,7 +106,8 @@ pub struct Line {
 }
 
 impl Line {
-    /// q of equation (15), where the line is written p x - q with the barrier at x_c: q = p x_c - F(touch).
+    /// q of equation (15), where the line is written p x - q with the barrier at x_c: q = p x_c -
+    /// F(touch).
     pub fn q(&self, barrier: f64) -> f64 {
         self.slope * barrier - self.at_touch
     }
@@ -114,13 +118,17 @@ impl Line {
 #[non_exhaustive]
 pub enum LinearisationError {
     /// The greatest depth is not a positive number.
-    #[error("the force cannot be replaced by a line over the depth {0}: the greatest depth must be a positive number")]
+    #[error(
+        "the force cannot be replaced by a line over the depth {0}: the greatest depth must be a positive number"
+    )]
     Depth(f64),
     /// The force does not push back.
     #[error("the elastic force does no positive work up to the depth {0}: it must push back")]
     NotElastic(f64),
     /// The force stays below the energy of the impact at any depth.
-    #[error("the elastic force stops no impact of energy {0:e} (per unit of gamma): it must grow with the depth")]
+    #[error(
+        "the elastic force stops no impact of energy {0:e} (per unit of gamma): it must grow with the depth"
+    )]
     NeverStops(f64),
     /// The energy is used up before there is a depth in numbers.
     #[error(
@@ -135,10 +143,12 @@ pub enum LinearisationError {
     Force(#[from] RootError),
 }
 
-/// The line that replaces `elastic_force` (a function of the depth, per unit of gamma) on depths from 0 to `deepest`.
+/// The line that replaces `elastic_force` (a function of the depth, per unit of gamma) on depths
+/// from 0 to `deepest`.
 ///
 /// # Errors
-/// [`LinearisationError`]: a depth that is not positive, a force that is not finite or does not push back.
+/// [`LinearisationError`]: a depth that is not positive, a force that is not finite or does not
+/// push back.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -148,7 +158,11 @@ pub enum LinearisationError {
 /// assert!((line.slope - 0.5).abs() < 1e-12 && line.at_touch == 0.0);
 /// # Ok::<(), lindstedt::impact::LinearisationError>(())
 /// ```
-pub fn fit(rule: Rule, elastic_force: impl Fn(f64) -> f64, deepest: f64) -> Result<Line, LinearisationError> {
+pub fn fit(
+    rule: Rule,
+    elastic_force: impl Fn(f64) -> f64,
+    deepest: f64,
+) -> Result<Line, LinearisationError> {
     if !(deepest.is_finite() && deepest > 0.0) {
         return Err(LinearisationError::Depth(deepest));
     }
@@ -156,14 +170,18 @@ pub fn fit(rule: Rule, elastic_force: impl Fn(f64) -> f64, deepest: f64) -> Resu
     if work <= 0.0 {
         return Err(LinearisationError::NotElastic(deepest));
     }
-    let through_touch = |slope: f64| Line { slope, at_touch: 0.0 };
+    let through_touch = |slope: f64| Line {
+        slope,
+        at_touch: 0.0,
+    };
     match rule {
         Rule::LeastSquares => least_squares(&elastic_force, deepest, true),
         Rule::LeastSquaresThroughTouch => least_squares(&elastic_force, deepest, false),
         Rule::EqualEnergy => Ok(through_touch(2.0 * work / (deepest * deepest))),
         Rule::EqualPeak => Ok(through_touch(elastic_force(deepest) / deepest)),
         Rule::HarmonicBalance => {
-            // phi = u^2 makes powers of sqrt(depth) smooth at touch; the second quarter is the mirror image.
+            // phi = u^2 makes powers of sqrt(depth) smooth at touch; the second quarter is the
+            // mirror image.
             let half = |u: f64| {
                 let sine = (u * u).sin();
                 2.0 * u * elastic_force(deepest * sine) * sine
@@ -184,22 +202,33 @@ pub fn fit(rule: Rule, elastic_force: impl Fn(f64) -> f64, deepest: f64) -> Resu
 /// A force that is not finite or not smooth.
 pub fn work(elastic_force: impl Fn(f64) -> f64, depth: f64) -> Result<f64, QuadratureError> {
     // d = q^2 makes any force in powers of sqrt(d) smooth.
-    match integrate_smooth(|q| 2.0 * q * elastic_force(q * q), 0.0, depth.max(0.0).sqrt(), 1e-14) {
+    match integrate_smooth(
+        |q| 2.0 * q * elastic_force(q * q),
+        0.0,
+        depth.max(0.0).sqrt(),
+        1e-14,
+    ) {
         // A force that is a difference near the touch leaves no more digits than this.
         Err(QuadratureError::NotConverged {
-            value, error_estimate, ..
+            value,
+            error_estimate,
+            ..
         }) if error_estimate <= 1e-11 * value.abs() => Ok(value),
         result => result.map(|(work, _)| work),
     }
 }
 
-/// The depth at which the force has done this work: where an impact of that energy (per unit of gamma) turns, gravity
-/// apart. For Hertz contact of stiffness gamma and energy v^2/(2 gamma) it is (5 v^2/(4 gamma))^(2/5).
+/// The depth at which the force has done this work: where an impact of that energy (per unit of
+/// gamma) turns, gravity apart. For Hertz contact of stiffness gamma and energy v^2/(2 gamma) it is
+/// (5 v^2/(4 gamma))^(2/5).
 ///
 /// # Errors
-/// [`LinearisationError::NeverStops`] where no depth is deep enough, [`LinearisationError::TooShallow`] where every one is, and those
-/// of [`work`].
-pub fn greatest_depth(elastic_force: impl Fn(f64) -> f64, energy: f64) -> Result<f64, LinearisationError> {
+/// [`LinearisationError::NeverStops`] where no depth is deep enough,
+/// [`LinearisationError::TooShallow`] where every one is, and those of [`work`].
+pub fn greatest_depth(
+    elastic_force: impl Fn(f64) -> f64,
+    energy: f64,
+) -> Result<f64, LinearisationError> {
     if !(energy.is_finite() && energy > 0.0) {
         return Err(LinearisationError::NeverStops(energy));
     }
@@ -228,7 +257,8 @@ pub fn greatest_depth(elastic_force: impl Fn(f64) -> f64, energy: f64) -> Result
     })
 }
 
-/// Weighted least squares at Gauss points in sqrt(depth): the integral of the squared misfit, exactly enough.
+/// Weighted least squares at Gauss points in sqrt(depth): the integral of the squared misfit,
+/// exactly enough.
 fn least_squares(
     elastic_force: impl Fn(f64) -> f64,
     deepest: f64,
@@ -244,7 +274,10 @@ fn least_squares(
         let root_weight = (2.0 * q * weight).sqrt();
         let force = elastic_force(deepest * q * q) / peak;
         if !force.is_finite() {
-            return Err(QuadratureError::NonFinite { at: deepest * q * q }.into());
+            return Err(QuadratureError::NonFinite {
+                at: deepest * q * q,
+            }
+            .into());
         }
         right[row] = root_weight * force;
         matrix[(row, 0)] = root_weight * q * q;
@@ -258,16 +291,25 @@ fn least_squares(
         .r()
         .solve_upper_triangular(&projected)
         .ok_or(LinearisationError::NotElastic(deepest))?;
-    let at_touch = if with_constant { solution[1] * peak } else { 0.0 };
+    let at_touch = if with_constant {
+        solution[1] * peak
+    } else {
+        0.0
+    };
     Ok(Line {
         slope: solution[0] * peak / deepest,
         at_touch,
     })
 }
 
-/// Duration of a contact turned at this depth by the force alone, at unit gamma: 2 int_0^D dd / sqrt(2 int_d^D F).
-fn spring_free_duration(elastic_force: impl Fn(f64) -> f64, deepest: f64) -> Result<f64, QuadratureError> {
-    // d = q^2, q = q_m (1 - w^2): then int_d^D F = q_m w^2 M(q), M the mean of 2 q F(q^2) between q and q_m.
+/// Duration of a contact turned at this depth by the force alone, at unit gamma: 2 int_0^D dd /
+/// sqrt(2 int_d^D F).
+fn spring_free_duration(
+    elastic_force: impl Fn(f64) -> f64,
+    deepest: f64,
+) -> Result<f64, QuadratureError> {
+    // d = q^2, q = q_m (1 - w^2): then int_d^D F = q_m w^2 M(q), M the mean of 2 q F(q^2) between q
+    // and q_m.
     let root = deepest.sqrt();
     let mean = |q: f64| {
         let summand = |(fraction, weight): (f64, f64)| {
@@ -292,14 +334,17 @@ mod tests {
     /// Slope and constant in units of sqrt(D) and D^(3/2), for F = d^(3/2).
     fn hertz_line(rule: Rule, deepest: f64) -> (f64, f64) {
         let line = fit(rule, hertz::elastic_force, deepest).unwrap();
-        (line.slope / deepest.sqrt(), line.at_touch / deepest.powf(1.5))
+        (
+            line.slope / deepest.sqrt(),
+            line.at_touch / deepest.powf(1.5),
+        )
     }
 
     #[test]
     fn the_lines_of_a_hertz_contact() {
         use spec_math::cephes64::gamma;
-        // Exact: int y^(3/2) (1, y) = 2/5, 2/7; normal equations for the affine line, Gamma functions for the last
-        // two.
+        // Exact: int y^(3/2) (1, y) = 2/5, 2/7; normal equations for the affine line, Gamma
+        // functions for the last two.
         let half_sine = 2.0 / PI.sqrt() * gamma(1.75) / gamma(2.25);
         let factor = 0.8 * PI.sqrt() * gamma(0.4) / gamma(0.9);
         let table = [
@@ -376,7 +421,11 @@ mod tests {
         }
         let unknown = "least_squares".parse::<Rule>().unwrap_err().to_string();
         assert!(unknown.contains("`least_squares`") && unknown.contains("equal-duration"));
-        assert!(Rule::ALL.into_iter().all(|rule| unknown.contains(rule.name())));
+        assert!(
+            Rule::ALL
+                .into_iter()
+                .all(|rule| unknown.contains(rule.name()))
+        );
     }
 
     #[test]
@@ -390,7 +439,10 @@ mod tests {
         for rule in Rule::ALL {
             assert!(fit(rule, |_| f64::NAN, 1.0).is_err(), "{rule}");
             assert!(
-                matches!(fit(rule, |depth| -depth, 1.0), Err(LinearisationError::NotElastic(_))),
+                matches!(
+                    fit(rule, |depth| -depth, 1.0),
+                    Err(LinearisationError::NotElastic(_))
+                ),
                 "{rule}"
             );
         }

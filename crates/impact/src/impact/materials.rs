@@ -1,7 +1,8 @@
-//! Which material a barrier should be made of: the same swing against barriers that differ in their modulus alone.
+//! Which material a barrier should be made of: the same swing against barriers that differ in their
+//! modulus alone.
 //!
-//! In: a design, what damps it, and materials. Out: for each material the contact, the motion until it rests, and how the rest time
-//! depends on what is held fixed while the modulus changes,
+//! In: a design, what damps it, and materials. Out: for each material the contact, the motion until
+//! it rests, and how the rest time depends on what is held fixed while the modulus changes,
 //!
 //! ```text
 //! gamma = (4/3) E sqrt(R) L^(3/2)/(m g)                                      equation (8), grows with E
@@ -9,7 +10,8 @@
 //! mu/gamma fixed, or lambda, or a restitution at a speed     the restitution e((mu/gamma) v) is that of any E
 //! ```
 //!
-//! The damping that is given is taken at the design's own modulus; the other forms hold fixed what it is there.
+//! The damping that is given is taken at the design's own modulus; the other forms hold fixed what
+//! it is there.
 
 use thiserror::Error;
 
@@ -35,7 +37,8 @@ pub const DEFAULT_MATERIALS: [(&str, f64); 3] = [
 /// The damping ratio zeta of a study that is given none.
 pub const DEFAULT_ZETA: f64 = 0.02;
 
-/// lambda, s/m, of a study that is given no contact damping: mu/gamma = 0.1 for the default design, sqrt(g L) = 0.817 m/s.
+/// lambda, s/m, of a study that is given no contact damping: mu/gamma = 0.1 for the default design,
+/// sqrt(g L) = 0.817 m/s.
 pub fn default_lambda() -> f64 {
     let design = hertz::Design::default();
     0.1 / (design.gravity * design.length).sqrt()
@@ -60,7 +63,8 @@ pub struct Material {
 }
 
 impl Material {
-    /// The [`DEFAULT_MATERIALS`], each by its modulus alone: the sphere counts as rigid and the barrier as a body without Poisson's ratio.
+    /// The [`DEFAULT_MATERIALS`], each by its modulus alone: the sphere counts as rigid and the
+    /// barrier as a body without Poisson's ratio.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -84,7 +88,8 @@ impl Material {
 /// A study of materials: the question.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaterialQuestion {
-    /// The pendulum and what damps it. Its modulus is the one at which the damping of the contact is what is given.
+    /// The pendulum and what damps it. Its modulus is the one at which the damping of the contact
+    /// is what is given.
     pub case: Case,
     /// The materials.
     pub materials: Vec<Material>,
@@ -179,17 +184,22 @@ pub fn course(
         keep_path: false,
         ..*settings
     };
-    Ok(Course::from(&simulate(model, start, integrator, &settings)?))
+    Ok(Course::from(&simulate(
+        model, start, integrator, &settings,
+    )?))
 }
 
 impl From<&Simulation> for Course {
     fn from(motion: &Simulation) -> Self {
         let model = &motion.model;
         let rest_time = motion.rest().time;
-        let before_rest =
-            |impact: &&Contact| rest_time.is_err() || rest_time.is_ok_and(|rest| impact.entry_time < rest);
+        let before_rest = |impact: &&Contact| {
+            rest_time.is_err() || rest_time.is_ok_and(|rest| impact.entry_time < rest)
+        };
         let impacts: Vec<Contact> = motion.impacts.iter().filter(before_rest).copied().collect();
-        let energy = |impact: &Contact| Some(model.swing_energy(model.barrier(impact.side)?, impact.speed_out?));
+        let energy = |impact: &Contact| {
+            Some(model.swing_energy(model.barrier(impact.side)?, impact.speed_out?))
+        };
         Self {
             rest_time,
             energies: impacts.iter().filter_map(energy).collect(),
@@ -237,7 +247,8 @@ pub struct MaterialRow {
     pub yield_checks: Vec<YieldCheck>,
 }
 
-/// The materials under one form of the contact damping, held fixed at what it is for the modulus of the design.
+/// The materials under one form of the contact damping, held fixed at what it is for the modulus of
+/// the design.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct HeldFixed {
@@ -254,9 +265,15 @@ pub struct HeldFixed {
 }
 
 impl HeldFixed {
-    /// The materials that rest first and last, by their numbers; nothing where one of them does not rest.
+    /// The materials that rest first and last, by their numbers; nothing where one of them does not
+    /// rest.
     pub fn extremes(&self) -> Option<[usize; 2]> {
-        let times: Vec<f64> = self.rest_times.iter().copied().collect::<Result<_, _>>().ok()?;
+        let times: Vec<f64> = self
+            .rest_times
+            .iter()
+            .copied()
+            .collect::<Result<_, _>>()
+            .ok()?;
         let numbers = 0..times.len();
         let by_time = |one: &usize, other: &usize| times[*one].total_cmp(&times[*other]);
         Some([numbers.clone().min_by(by_time)?, numbers.max_by(by_time)?])
@@ -288,8 +305,8 @@ pub struct MaterialStudy {
     pub rows: Vec<MaterialRow>,
     /// The rest time without a barrier, in units of 1/omega.
     pub no_barrier: Result<f64, NoRest>,
-    /// The same materials under every form of the contact damping, the given one first; empty where the contact loses nothing, or is
-    /// not touched.
+    /// The same materials under every form of the contact damping, the given one first; empty where
+    /// the contact loses nothing, or is not touched.
     pub held_fixed: Vec<HeldFixed>,
 }
 
@@ -344,7 +361,13 @@ pub fn study_materials(question: MaterialQuestion) -> Result<MaterialStudy, Mate
         model,
         start,
         rows,
-        no_barrier: course(&without, start, question.integrator, &longer(&question.settings))?.rest_time,
+        no_barrier: course(
+            &without,
+            start,
+            question.integrator,
+            &longer(&question.settings),
+        )?
+        .rest_time,
         dissipation,
         held_fixed,
         question,
@@ -360,7 +383,8 @@ fn longer(settings: &Settings) -> Settings {
 }
 
 impl MaterialQuestion {
-    /// The case of a material, with this damping of its contact; the speed is in the unit of the case.
+    /// The case of a material, with this damping of its contact; the speed is in the unit of the
+    /// case.
     fn case_of(&self, material: &Material, damping: ContactDamping, at_speed: Option<f64>) -> Case {
         let mut case = self.case;
         case.gamma = None;
@@ -387,7 +411,11 @@ impl MaterialQuestion {
     }
 }
 
-fn row(question: &MaterialQuestion, units: &Units, material: &Material) -> Result<MaterialRow, MaterialsError> {
+fn row(
+    question: &MaterialQuestion,
+    units: &Units,
+    material: &Material,
+) -> Result<MaterialRow, MaterialsError> {
     let case = question.own_case(material);
     let (model, start) = MaterialQuestion::motion_of(material, &case)?;
     let course = course(&model, start, question.integrator, &question.settings)?;
@@ -396,7 +424,10 @@ fn row(question: &MaterialQuestion, units: &Units, material: &Material) -> Resul
         None => None,
     };
     let lossless = Model { mu: 0.0, ..model };
-    let limits = [("sphere", question.sphere_yield), ("barrier", material.yield_limit)];
+    let limits = [
+        ("sphere", question.sphere_yield),
+        ("barrier", material.yield_limit),
+    ];
     let checks = limits.into_iter().filter_map(|(body, limit)| {
         let limit = limit?;
         Some(YieldCheck {
@@ -411,14 +442,21 @@ fn row(question: &MaterialQuestion, units: &Units, material: &Material) -> Resul
         dissipation: case.dissipation(Some(units))?,
         yield_checks: checks.collect(),
         first,
-        lossless: self::course(&lossless, start, question.integrator, &longer(&question.settings))?.rest_time,
+        lossless: self::course(
+            &lossless,
+            start,
+            question.integrator,
+            &longer(&question.settings),
+        )?
+        .rest_time,
         course,
         material: material.clone(),
     })
 }
 
-/// The numbers of a first contact in SI units; the greatest force is looked for on the motion itself. Of one of a chain, or too short for the
-/// clock, duration and force are those of the closed form, in which the swing's own force is left out: it has no time to act.
+/// The numbers of a first contact in SI units; the greatest force is looked for on the motion
+/// itself. Of one of a chain, or too short for the clock, duration and force are those of the
+/// closed form, in which the swing's own force is left out: it has no time to act.
 fn first_contact(
     impact: &Contact,
     model: &Model,
@@ -429,7 +467,8 @@ fn first_contact(
     let (Some(exit), Some(restitution)) = (impact.exit_time, impact.restitution) else {
         return Ok(None);
     };
-    let closed = question.integrator == Integrator::Chain || exit - impact.entry_time < CLOCK * exit;
+    let closed =
+        question.integrator == Integrator::Chain || exit - impact.entry_time < CLOCK * exit;
     let closed_form = match closed {
         true => HuntCrossley::new(1.5, model.gamma, model.mu / model.gamma, impact.speed_in).ok(),
         false => None,
@@ -460,7 +499,10 @@ fn first_contact(
 }
 
 /// The materials under every form of the damping of the design, the given one first.
-fn held_fixed(question: &MaterialQuestion, dissipation: &Dissipation) -> Result<Vec<HeldFixed>, MaterialsError> {
+fn held_fixed(
+    question: &MaterialQuestion,
+    dissipation: &Dissipation,
+) -> Result<Vec<HeldFixed>, MaterialsError> {
     let given = dissipation.contact;
     let touch_speed = dissipation.touch_speed;
     let form = |form: Parameter| match form {
@@ -471,7 +513,9 @@ fn held_fixed(question: &MaterialQuestion, dissipation: &Dissipation) -> Result<
         Parameter::ContactDamping => dissipation.coefficient.map(ContactDamping::Coefficient),
         _ => None,
     };
-    let others = ContactDamping::FORMS.into_iter().filter(|form| *form != given.form());
+    let others = ContactDamping::FORMS
+        .into_iter()
+        .filter(|form| *form != given.form());
     let forms = std::iter::once(given).chain(others.filter_map(form));
     let mut found = Vec::new();
     for damping in forms {
@@ -515,15 +559,21 @@ impl MaterialStudy {
         [softest, hardest]
     }
 
-    /// Whether a softer material always rests sooner (true) or always later (false); nothing where neither is so, or one does not rest.
+    /// Whether a softer material always rests sooner (true) or always later (false); nothing where
+    /// neither is so, or one does not rest.
     pub fn order(&self, held: &HeldFixed) -> Option<bool> {
         let mut rests: Vec<(f64, f64)> = Vec::new();
         for (row, time) in self.rows.iter().zip(&held.rest_times) {
             rests.push((row.gamma, time.ok()?));
         }
         rests.sort_by(|one, other| one.0.total_cmp(&other.0));
-        let always = |sooner: fn(f64, f64) -> bool| rests.windows(2).all(|pair| sooner(pair[0].1, pair[1].1));
-        match (always(|soft, hard| soft < hard), always(|soft, hard| soft > hard)) {
+        let always = |sooner: fn(f64, f64) -> bool| {
+            rests.windows(2).all(|pair| sooner(pair[0].1, pair[1].1))
+        };
+        match (
+            always(|soft, hard| soft < hard),
+            always(|soft, hard| soft > hard),
+        ) {
             (true, false) => Some(true),
             (false, true) => Some(false),
             _ => None,
@@ -535,12 +585,22 @@ impl MaterialStudy {
         self.units.time() * rest_time
     }
 
-    /// The motion of a material as a function of time, for so long: as asked for, or under this form of the damping.
+    /// The motion of a material as a function of time, for so long: as asked for, or under this
+    /// form of the damping.
     ///
     /// # Errors
     /// As [`study_materials`]; a row that is not there has no motion.
-    pub fn motion(&self, row: usize, held: Option<&HeldFixed>, duration: f64) -> Result<Simulation, MaterialsError> {
-        let material = self.question.materials.get(row).ok_or(MaterialsError::NoMaterial)?;
+    pub fn motion(
+        &self,
+        row: usize,
+        held: Option<&HeldFixed>,
+        duration: f64,
+    ) -> Result<Simulation, MaterialsError> {
+        let material = self
+            .question
+            .materials
+            .get(row)
+            .ok_or(MaterialsError::NoMaterial)?;
         let case = match held {
             None => self.question.own_case(material),
             Some(held) => Case {
@@ -556,7 +616,11 @@ impl MaterialStudy {
     ///
     /// # Errors
     /// As [`MaterialStudy::motion`].
-    pub fn motion_without(&self, barrier_of: Option<usize>, duration: f64) -> Result<Simulation, MaterialsError> {
+    pub fn motion_without(
+        &self,
+        barrier_of: Option<usize>,
+        duration: f64,
+    ) -> Result<Simulation, MaterialsError> {
         let model = match barrier_of.and_then(|row| self.rows.get(row)) {
             None => Model {
                 left: None,
@@ -572,7 +636,12 @@ impl MaterialStudy {
         self.follow(&model, self.start, duration)
     }
 
-    fn follow(&self, model: &Model, start: Start, duration: f64) -> Result<Simulation, MaterialsError> {
+    fn follow(
+        &self,
+        model: &Model,
+        start: Start,
+        duration: f64,
+    ) -> Result<Simulation, MaterialsError> {
         let settings = Settings {
             duration,
             keep_path: true,

@@ -1,23 +1,31 @@
 //! The impact wing: a pendulum that meets an elastic barrier, in closed form and in full.
 //!
-//! x'' + f(x) + gamma F(x - x_c) H(x - x_c) = 0, released at rest from x = -A towards the barrier at x_c: with
-//! f = sin x and F = depth^(3/2) the paper's equation (9); with damping, friction and a moving pivot its equation (7).
-//! In: amplitude, barrier, stiffness, and what damps and drives. Out: one impact in three closed forms beside the true
-//! motion, or a whole motion, event by event, and many of them at once.
+//! x'' + f(x) + gamma F(x - x_c) H(x - x_c) = 0, released at rest from x = -A towards the barrier
+//! at x_c: with f = sin x and F = depth^(3/2) the paper's equation (9); with damping, friction and
+//! a moving pivot its equation (7). In: amplitude, barrier, stiffness, and what damps and drives.
+//! Out: one impact in three closed forms beside the true motion, or a whole motion, event by event,
+//! and many of them at once.
 //!
 //! Each file uses only those above it:
 //!
-//! - [`hertz`]: the contact alone: force, depth, duration, and gamma from mass, radius, length and modulus, equation (8).
-//! - `units`: the pendulum in SI units: [`Units`], the [`Modulus`] of two bodies, force and pressure.
-//! - `linearisation`: [`Rule`] and [`fit`], the straight line that replaces F while in contact, equation (15).
+//! - [`hertz`]: the contact alone: force, depth, duration, and gamma from mass, radius, length and
+//!   modulus, equation (8).
+//! - `units`: the pendulum in SI units: [`Units`], the [`Modulus`] of two bodies, force and
+//!   pressure.
+//! - `linearisation`: [`Rule`] and [`fit`], the straight line that replaces F while in contact,
+//!   equation (15).
 //! - [`contact`]: the contact by other laws, the exact one among them, side by side.
-//! - `collision`: a [`Collision`], the question: two forces, a release and a barrier; the speed at the touch.
+//! - `collision`: a [`Collision`], the question: two forces, a release and a barrier; the speed at
+//!   the touch.
 //! - `form`: a [`Form`], the function of time that a phase is.
-//! - `phases`: [`three_phases`], approach | contact | return in closed form, equations (13) to (16).
+//! - `phases`: [`three_phases`], approach | contact | return in closed form, equations (13) to
+//!   (16).
 //! - `parameter`: the numbers that a study may vary, by name, group and unit.
-//! - `dissipation`: what damps, in every form in which it may be given, and which is held fixed: [`Dissipation`].
+//! - `dissipation`: what damps, in every form in which it may be given, and which is held fixed:
+//!   [`Dissipation`].
 //! - `model`: the forces of equation (7) and what its parameters may be.
-//! - `case`: a [`Case`], the same by dimensions and materials, any number of which a [`Parameter`] reads or writes.
+//! - `case`: a [`Case`], the same by dimensions and materials, any number of which a [`Parameter`]
+//!   reads or writes.
 //! - `polynomial`: polynomials on an interval, and where their sign changes.
 //! - `simulation`: a motion that was followed: its path, its energy, when it came to rest.
 //! - `taylor`: the fast integrator, by power series, eight motions in one instruction stream.
@@ -94,25 +102,28 @@ pub use collision::{Collision, CollisionError};
 pub use compare::{ImpactComparison, ImpactMethod, ImpactRow, compare};
 pub use derived::{DerivedContact, Flight, NoFlight};
 pub use dissipation::{
-    ContactDamping, ContactScales, DampingError, Dissipation, SpeedUnit, friction_of_torque, torque_of_friction,
-    viscous_coefficient, viscous_ratio,
+    ContactDamping, ContactScales, DampingError, Dissipation, SpeedUnit, friction_of_torque,
+    torque_of_friction, viscous_coefficient, viscous_ratio,
 };
 pub use form::{Form, Term};
 pub use judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation, true_impact};
 pub use linearisation::{Line, LinearisationError, Rule, UnknownRule, fit};
 pub use materials::{
-    Course, DEFAULT_DURATION, DEFAULT_MATERIALS, DEFAULT_ZETA, FirstContact, HeldFixed, Material, MaterialQuestion,
-    MaterialRow, MaterialStudy, MaterialsError, course, default_lambda, study_materials,
+    Course, DEFAULT_DURATION, DEFAULT_MATERIALS, DEFAULT_ZETA, FirstContact, HeldFixed, Material,
+    MaterialQuestion, MaterialRow, MaterialStudy, MaterialsError, course, default_lambda,
+    study_materials,
 };
-pub use model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, STEEPNESS, Side, Start};
+pub use model::{
+    DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, STEEPNESS, Side, Start,
+};
 pub use parameter::{Parameter, UnknownParameter};
 pub use phases::{ContactSpeed, FittedLine, Phase, PhasesError, Swing, ThreePhases, three_phases};
 pub use setup::{ContactLoss, Letters, Setup, SetupError};
 pub use si::{SiImpact, YieldCheck};
 pub use simulate::{SimulationError, known_until, simulate, simulate_many};
 pub use simulation::{
-    ClosedForm, Contact, ContactDeviation, Difference, EnergyBook, EnergyPoint, Integrator, NoRest, Path, Piece,
-    REST_FRACTION, Regime, Rest, Settings, Simulation, Stop, Turn,
+    ClosedForm, Contact, ContactDeviation, Difference, EnergyBook, EnergyPoint, Integrator, NoRest,
+    Path, Piece, REST_FRACTION, Regime, Rest, Settings, Simulation, Stop, Turn,
 };
 pub use trial::{Attempt, ImpactError};
 pub use units::{Elastic, FIRST_YIELD, Modulus, Units};

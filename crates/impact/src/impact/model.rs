@@ -7,9 +7,10 @@
 //! E = x'^2/2 + 1 - cos x + (2/5) gamma d^(5/2)
 //! ```
 //!
-//! (K. H. Hunt and F. R. E. Crossley, *J. Appl. Mech.* 42 (1975) 440 for the damped contact.) Angles in radians, time
-//! in units of 1/omega with omega^2 = g/L, energy in units of m g L; everything else is dimensionless. The maximum
-//! says that the contact never pulls: left fast enough, the barrier lets go before it is back in place.
+//! (K. H. Hunt and F. R. E. Crossley, *J. Appl. Mech.* 42 (1975) 440 for the damped contact.)
+//! Angles in radians, time in units of 1/omega with omega^2 = g/L, energy in units of m g L;
+//! everything else is dimensionless. The maximum says that the contact never pulls: left fast
+//! enough, the barrier lets go before it is back in place.
 
 use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
@@ -91,8 +92,8 @@ pub struct Model {
 }
 
 impl Default for Model {
-    /// The default barrier, [`DEFAULT_BARRIER`], with the stiffness of its design, [`hertz::DEFAULT_STIFFNESS`], and nothing
-    /// that damps or drives.
+    /// The default barrier, [`DEFAULT_BARRIER`], with the stiffness of its design,
+    /// [`hertz::DEFAULT_STIFFNESS`], and nothing that damps or drives.
     fn default() -> Self {
         Self {
             zeta: 0.0,
@@ -169,7 +170,9 @@ pub enum ModelError {
         value: f64,
     },
     /// Barriers in the wrong order.
-    #[error("the left barrier at {left} must lie below the right one at {right}: give [left, right]")]
+    #[error(
+        "the left barrier at {left} must lie below the right one at {right}: give [left, right]"
+    )]
     Barriers {
         /// Position of the left one, rad.
         left: f64,
@@ -201,7 +204,10 @@ impl Model {
         if let Some(&(parameter, value)) = numbers.iter().find(|(_, value)| !value.is_finite()) {
             return Err(ModelError::NotFinite { parameter, value });
         }
-        if let Some(&(parameter, value)) = numbers[5..8].iter().find(|(_, value)| value.abs() > LARGEST_ANGLE) {
+        if let Some(&(parameter, value)) = numbers[5..8]
+            .iter()
+            .find(|(_, value)| value.abs() > LARGEST_ANGLE)
+        {
             return Err(ModelError::LostDigits { parameter, value });
         }
         if let Some(&(parameter, value)) = numbers[..4].iter().find(|(_, value)| *value < 0.0) {
@@ -229,16 +235,19 @@ impl Model {
 
     /// Whether both barriers stand within this angle of a place.
     pub(super) fn is_caged(&self, place: f64, angle: f64) -> bool {
-        let near = |barrier: Option<f64>| barrier.is_some_and(|barrier| (barrier - place).abs() < angle);
+        let near =
+            |barrier: Option<f64>| barrier.is_some_and(|barrier| (barrier - place).abs() < angle);
         near(self.left) && near(self.right)
     }
 
-    /// Whether dry friction is Coulomb's and there is some: then the motion is followed one direction at a time.
+    /// Whether dry friction is Coulomb's and there is some: then the motion is followed one
+    /// direction at a time.
     pub fn sticks(&self) -> bool {
         self.friction == Friction::Exact && self.alpha > 0.0
     }
 
-    /// Acceleration by all that does not depend on the velocity and is no contact: gravity and excitation.
+    /// Acceleration by all that does not depend on the velocity and is no contact: gravity and
+    /// excitation.
     pub fn field(&self, t: f64, x: f64) -> f64 {
         if self.beta == 0.0 {
             return -x.sin();
@@ -252,8 +261,8 @@ impl Model {
         self.beta * eta * (eta * t).cos() * x.cos()
     }
 
-    /// Acceleration by damping: viscous, and dry by equation (6) or, for Coulomb's law, in motion of this direction
-    /// (1, -1, or 0 for none).
+    /// Acceleration by damping: viscous, and dry by equation (6) or, for Coulomb's law, in motion
+    /// of this direction (1, -1, or 0 for none).
     pub fn damping(&self, velocity: f64, direction: f64) -> f64 {
         let dry = match self.friction {
             Friction::Exact => self.alpha * direction,
@@ -262,12 +271,14 @@ impl Model {
         -2.0 * self.zeta * velocity - dry
     }
 
-    /// Force of a barrier entered to this depth and at this speed, per mass; away from the barrier it is zero.
+    /// Force of a barrier entered to this depth and at this speed, per mass; away from the barrier
+    /// it is zero.
     pub fn contact(&self, depth: f64, speed: f64) -> f64 {
         hertz::force((self.gamma + self.mu * speed).max(0.0), depth)
     }
 
-    /// Whether a barrier left at this speed (negative: outwards) would have to pull: it comes back more slowly.
+    /// Whether a barrier left at this speed (negative: outwards) would have to pull: it comes back
+    /// more slowly.
     pub fn would_pull(&self, speed: f64) -> bool {
         self.gamma + self.mu * speed < 0.0
     }
@@ -297,8 +308,9 @@ impl Model {
         self.swing_energy(x, velocity) + self.elastic_energy(depth)
     }
 
-    /// When Coulomb friction lets go of a pendulum at rest at x, held since `t` against the constant force `field` and
-    /// the excitation: the time and the direction; nothing where it holds for ever.
+    /// When Coulomb friction lets go of a pendulum at rest at x, held since `t` against the
+    /// constant force `field` and the excitation: the time and the direction; nothing where it
+    /// holds for ever.
     ///
     /// |field + beta cos x sin(eta t)| = alpha, with the force on its way out.
     pub(super) fn release(&self, t: f64, x: f64, field: f64) -> Option<(f64, f64)> {

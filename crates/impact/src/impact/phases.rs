@@ -1,7 +1,7 @@
 //! Approach, contact, return: one impact of the pendulum in closed form, equations (13) to (16).
 //!
-//! In: a [`Swing`]: amplitude A, barrier x_c, stiffness gamma, the law omega^2 of the free swing, the forces as
-//! closures. Out: [`ThreePhases`], the motion from release at x = -A back to -A.
+//! In: a [`Swing`]: amplitude A, barrier x_c, stiffness gamma, the law omega^2 of the free swing,
+//! the forces as closures. Out: [`ThreePhases`], the motion from release at x = -A back to -A.
 //!
 //! ```text
 //! approach   x = -A cos(omega t)                                  t1 = acos(-x_c/A)/omega          (13)
@@ -35,7 +35,8 @@ use crate::decimal::significant;
 use crate::series::terms;
 use crate::symbol::Symbol;
 
-/// One impact: x'' + f(x) + gamma F(x - x_c) = 0, released at rest from x = -amplitude towards the barrier.
+/// One impact: x'' + f(x) + gamma F(x - x_c) = 0, released at rest from x = -amplitude towards the
+/// barrier.
 #[derive(Clone, Copy)]
 pub struct Swing<'a> {
     /// Amplitude A > 0: the release is at x = -A.
@@ -80,18 +81,21 @@ impl fmt::Display for ContactSpeed {
 pub struct ThreePhases {
     /// Approach, contact, return.
     pub phases: [Phase; 3],
-    /// Speed v at first touch, in the units of x and time of the equation: rad times omega for the pendulum.
+    /// Speed v at first touch, in the units of x and time of the equation: rad times omega for the
+    /// pendulum.
     pub speed: f64,
-    /// Speed at the end of the contact, out of the barrier: less than `speed` where the contact loses energy.
+    /// Speed at the end of the contact, out of the barrier: less than `speed` where the contact
+    /// loses energy.
     pub exit_speed: f64,
     /// Greatest depth of the closed form, in the unit of x.
     pub penetration: f64,
     /// Duration of the contact, in units of 1/omega for the pendulum.
     pub duration: f64,
-    /// Time from the release to the turning point after the impact, in the same unit: where nothing is lost, the period.
+    /// Time from the release to the turning point after the impact, in the same unit: where nothing
+    /// is lost, the period.
     pub period: f64,
-    /// Speed of contact minus the speed of the cosine at the barrier: the size of the jump of the velocity at the
-    /// start and at the end of the contact. Zero for [`ContactSpeed::Paper`].
+    /// Speed of contact minus the speed of the cosine at the barrier: the size of the jump of the
+    /// velocity at the start and at the end of the contact. Zero for [`ContactSpeed::Paper`].
     pub velocity_jump: f64,
     /// The line that replaces the elastic force, where one does.
     pub fitted: Option<FittedLine>,
@@ -102,7 +106,8 @@ pub struct ThreePhases {
 pub struct FittedLine {
     /// The line, per unit of gamma.
     pub line: Line,
-    /// Depth over which it was fitted, in the unit of x: d_max of the energy balance, gravity apart.
+    /// Depth over which it was fitted, in the unit of x: d_max of the energy balance, gravity
+    /// apart.
     pub depth: f64,
 }
 
@@ -115,7 +120,8 @@ pub struct Phase {
     pub start: f64,
     /// Time at which it ends.
     pub end: f64,
-    /// The time from which its closed form counts, its clock: the start, or the end where it is the way back to rest.
+    /// The time from which its closed form counts, its clock: the start, or the end where it is the
+    /// way back to rest.
     pub clock: f64,
     /// Its closed form, in the time from `clock`.
     pub form: Form,
@@ -152,8 +158,8 @@ pub enum PhasesError {
 /// The closed form of the motion, with this speed of contact.
 ///
 /// # Errors
-/// [`PhasesError`], each with what to change: a barrier out of reach, no stiffness, an amplitude beyond the
-/// frequency law or outside the well.
+/// [`PhasesError`], each with what to change: a barrier out of reach, no stiffness, an amplitude
+/// beyond the frequency law or outside the well.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -190,12 +196,13 @@ pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, 
         ContactSpeed::Paper => swing_speed,
         ContactSpeed::Energy => energy_speed,
     };
-    let fitted_depth = linearisation::greatest_depth(swing.elastic_force, 0.5 * speed * speed / stiffness)?;
+    let fitted_depth =
+        linearisation::greatest_depth(swing.elastic_force, 0.5 * speed * speed / stiffness)?;
     let line = linearisation::fit(swing.rule, swing.elastic_force, fitted_depth)?;
     // In equation (15) the swing pulls with k x.
     let beside = [linear_stiffness * barrier, linear_stiffness];
-    let contact =
-        LineContact::new(line, stiffness, beside, speed).ok_or(PhasesError::LinearStiffness(linear_stiffness))?;
+    let contact = LineContact::new(line, stiffness, beside, speed)
+        .ok_or(PhasesError::LinearStiffness(linear_stiffness))?;
 
     let phase = (barrier / amplitude).acos();
     // acos(-x_c/A) = pi - acos(x_c/A): time of approach and of return.
@@ -291,7 +298,8 @@ impl Swing<'_> {
 }
 
 impl ThreePhases {
-    /// The same motion in another coordinate, offset + sign x; a cosine swings about zero, so it knows no offset.
+    /// The same motion in another coordinate, offset + sign x; a cosine swings about zero, so it
+    /// knows no offset.
     pub(super) fn moved(&self, sign: f64, offset: f64) -> Self {
         Self {
             phases: self.phases.each_ref().map(|phase| Phase {
@@ -313,7 +321,8 @@ impl ThreePhases {
         ]
     }
 
-    /// Displacement at this time; the motion repeats with its period, but one that has lost energy goes on as its return.
+    /// Displacement at this time; the motion repeats with its period, but one that has lost energy
+    /// goes on as its return.
     pub fn position_at(&self, time: f64) -> f64 {
         self.at(time).0
     }
@@ -343,8 +352,8 @@ impl ThreePhases {
 }
 
 impl Phase {
-    /// The number of the join from which its time is counted: contact from t1, the paper's return from t2, a derived one from
-    /// t3, its end.
+    /// The number of the join from which its time is counted: contact from t1, the paper's return
+    /// from t2, a derived one from t3, its end.
     pub fn joined_at(&self) -> Option<u8> {
         match self.name {
             "contact" => Some(1),
@@ -359,8 +368,9 @@ impl Phase {
         self.form.at(time - self.clock)
     }
 
-    /// The formula as people write it, six significant digits (nine for the centre of the contact, so that the depth
-    /// has six), without terms too small to write ([`Form::felt_terms`]): t1 is the start of the contact, t2 its end, t3 that of the return.
+    /// The formula as people write it, six significant digits (nine for the centre of the contact,
+    /// so that the depth has six), without terms too small to write ([`Form::felt_terms`]): t1 is
+    /// the start of the contact, t2 its end, t3 that of the return.
     pub fn closed_form(&self) -> String {
         self.closed_form_of(Symbol::new("x"))
     }
@@ -402,19 +412,22 @@ impl Phase {
                 )
             }
             Form::Harmonics { .. } | Form::Contact { .. } => {
-                let written = self
-                    .form
-                    .felt_terms()
-                    .into_iter()
-                    .map(|(function, value)| match function {
-                        Term::Constant => significant(value, 9),
-                        Term::Parabola => format!("{} {clock} (t2 - t)", significant(value, 6)),
-                        Term::Wave { function, frequency } => format!(
-                            "{} {function}({} {clock})",
-                            significant(value, 6),
-                            significant(frequency, 6)
-                        ),
-                    });
+                let written =
+                    self.form
+                        .felt_terms()
+                        .into_iter()
+                        .map(|(function, value)| match function {
+                            Term::Constant => significant(value, 9),
+                            Term::Parabola => format!("{} {clock} (t2 - t)", significant(value, 6)),
+                            Term::Wave {
+                                function,
+                                frequency,
+                            } => format!(
+                                "{} {function}({} {clock})",
+                                significant(value, 6),
+                                significant(frequency, 6)
+                            ),
+                        });
                 format!("{coordinate}(t) = {}", terms::sum(written))
             }
         }
@@ -451,13 +464,23 @@ mod tests {
     }
 
     fn near(value: f64, expected: f64, allowed: f64) {
-        assert!((value - expected).abs() <= allowed, "{value} against {expected}");
+        assert!(
+            (value - expected).abs() <= allowed,
+            "{value} against {expected}"
+        );
     }
 
     #[test]
     fn the_swing_of_the_paper() {
-        let motion = three_phases(&paper(Design::default().stiffness().unwrap()), ContactSpeed::Paper).unwrap();
-        let Form::Cosine { frequency, phase, .. } = motion.phases[2].form else {
+        let motion = three_phases(
+            &paper(Design::default().stiffness().unwrap()),
+            ContactSpeed::Paper,
+        )
+        .unwrap();
+        let Form::Cosine {
+            frequency, phase, ..
+        } = motion.phases[2].form
+        else {
             panic!("return is a cosine")
         };
         near(frequency, 0.847_791_247_9, 5e-11);
@@ -472,7 +495,11 @@ mod tests {
     #[test]
     fn the_energy_column_has_the_exact_speed_and_prints_the_jump() {
         let motion = three_phases(&paper(3.0407e7), ContactSpeed::Energy).unwrap();
-        near(motion.speed, (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt(), 1e-14);
+        near(
+            motion.speed,
+            (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt(),
+            1e-14,
+        );
         near(motion.speed, 1.324_802_058_11, 5e-12);
         near(motion.velocity_jump, 1.324_802_058_11 - 1.241_853_869, 1e-9);
         near(motion.fitted.unwrap().depth, 1.3909e-3, 5e-8);
@@ -492,7 +519,13 @@ mod tests {
 
     #[test]
     fn every_join_is_continuous_in_the_papers_column() {
-        for (barrier, stiffness) in [(0.323, 3.0407e7), (0.0, 1e6), (-0.9, 1e4), (1.4, 1e9), (0.323, 1.0)] {
+        for (barrier, stiffness) in [
+            (0.323, 3.0407e7),
+            (0.0, 1e6),
+            (-0.9, 1e4),
+            (1.4, 1e9),
+            (0.323, 1.0),
+        ] {
             let motion = three_phases(
                 &Swing {
                     barrier,
@@ -544,10 +577,21 @@ mod tests {
                 Event::record(|_, _, v| v).falling(),
                 Event::stop(move |_, x, _| x - barrier).falling(),
             ];
-            let path = integrate(|_, x, _| -x - stiffness * (p * x - q), start, 10.0, &events, &options).unwrap();
+            let path = integrate(
+                |_, x, _| -x - stiffness * (p * x - q),
+                start,
+                10.0,
+                &events,
+                &options,
+            )
+            .unwrap();
             near(path.end().t, contact.end, 1e-10);
             near(path.end().v, -motion.speed, 1e-10);
-            near(path.occurrences()[0].state.x - barrier, motion.penetration, 1e-11);
+            near(
+                path.occurrences()[0].state.x - barrier,
+                motion.penetration,
+                1e-11,
+            );
             for state in path.samples(50) {
                 let (x, v) = contact.form.at(state.t - contact.start);
                 near(x, state.x, 1e-11);
@@ -558,7 +602,8 @@ mod tests {
 
     #[test]
     fn the_error_of_each_line_in_duration_and_depth() {
-        // Against Hertz's own contact, gravity left out: the table of errors in percent, to its printed digits.
+        // Against Hertz's own contact, gravity left out: the table of errors in percent, to its
+        // printed digits.
         let speed = 1.3;
         let table = [
             (Rule::LeastSquares, 1.6, 0.0),
@@ -573,7 +618,11 @@ mod tests {
             let line = linearisation::fit(rule, elastic_force, depth).unwrap();
             let contact = LineContact::new(line, 1e6, [0.0; 2], speed).unwrap();
             let duration = crate::impact::hertz::duration(1e6, speed).unwrap();
-            near(100.0 * (contact.duration() / duration - 1.0), duration_error, 0.06);
+            near(
+                100.0 * (contact.duration() / duration - 1.0),
+                duration_error,
+                0.06,
+            );
             near(100.0 * (contact.depth() / depth - 1.0), depth_error, 0.06);
         }
     }
@@ -581,13 +630,20 @@ mod tests {
     #[test]
     fn the_formulas_as_people_write_them() {
         let motion = three_phases(&paper(3.0407e7), ContactSpeed::Paper).unwrap();
-        assert_eq!(motion.phases[0].closed_form(), "x(t) = -1.5 cos(0.847791 t)");
+        assert_eq!(
+            motion.phases[0].closed_form(),
+            "x(t) = -1.5 cos(0.847791 t)"
+        );
         assert_eq!(
             motion.phases[2].closed_form(),
             "x(t) = 1.5 cos(0.847791 (t - t2) + 1.35376)"
         );
         let contact = motion.phases[1].closed_form();
-        assert!(contact.starts_with("x(t) = 0.323") && contact.contains(" sin(") && contact.contains("(t - t1)"));
+        assert!(
+            contact.starts_with("x(t) = 0.323")
+                && contact.contains(" sin(")
+                && contact.contains("(t - t1)")
+        );
     }
 
     #[test]
@@ -622,7 +678,10 @@ mod tests {
             );
         }
         assert!(matches!(
-            refuse(Swing { barrier: -1.5, ..usual }),
+            refuse(Swing {
+                barrier: -1.5,
+                ..usual
+            }),
             PhasesError::Collision(CollisionError::ReleasedBehindBarrier { .. })
         ));
         assert!(matches!(
@@ -649,11 +708,17 @@ mod tests {
             frequency_squared: 1.0 - 9.0 / 8.0,
             ..usual
         });
-        assert!(beyond.to_string().contains("omega^2 = -0.125 at A = 3"), "{beyond}");
+        assert!(
+            beyond.to_string().contains("omega^2 = -0.125 at A = 3"),
+            "{beyond}"
+        );
         for amplitude in [std::f64::consts::PI, 3.5] {
             let outside = refuse(Swing { amplitude, ..usual });
             assert!(
-                matches!(outside, PhasesError::Collision(CollisionError::OutsideTheWell { .. })),
+                matches!(
+                    outside,
+                    PhasesError::Collision(CollisionError::OutsideTheWell { .. })
+                ),
                 "{outside}"
             );
         }
@@ -665,7 +730,10 @@ mod tests {
             ..usual
         });
         assert!(
-            matches!(outside, PhasesError::Collision(CollisionError::OutsideTheWell { .. })),
+            matches!(
+                outside,
+                PhasesError::Collision(CollisionError::OutsideTheWell { .. })
+            ),
             "{outside}"
         );
     }

@@ -1,7 +1,7 @@
 //! What an impact is asked with: a swing, a barrier in its way, and which closed forms.
 //!
-//! In: an equation of the swing with the values of its parameters, a release, a barrier and the law of its force. Out: the
-//! equation that is judged,
+//! In: an equation of the swing with the values of its parameters, a release, a barrier and the law
+//! of its force. Out: the equation that is judged,
 //!
 //! ```text
 //! x'' + f(x) + gamma F(x - x_c) H(x - x_c) = 0,   x(0) = x_r, x'(0) = 0       a barrier on the right
@@ -9,7 +9,8 @@
 //! ```
 //!
 //! where a contact that loses energy has gamma F (1 + lambda d') for gamma F, d' the speed inwards,
-//! and its two forces as functions, in the coordinate z = s (x - x_e) that runs from the equilibrium x_e towards the barrier.
+//! and its two forces as functions, in the coordinate z = s (x - x_e) that runs from the
+//! equilibrium x_e towards the barrier.
 
 use std::collections::BTreeMap;
 
@@ -26,7 +27,9 @@ use crate::conservative::force::NearRest;
 use crate::equilibrium::{centred, no_bottom, with_numbers_where_needed};
 use crate::exact::rational::ratio;
 use crate::exact::{Integer, Rational};
-use crate::expr::{CompiledFunction, Equation, EvaluationError, Expr, ExprError, Function, LostDigits, Node};
+use crate::expr::{
+    CompiledFunction, Equation, EvaluationError, Expr, ExprError, Function, LostDigits, Node,
+};
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::solution::{AmplitudeConvention, Degrees, Method};
 use crate::symbol::{Symbol, fresh};
@@ -39,7 +42,8 @@ const FREE_SWING: &str = "x'' + sin(x) = 0";
 /// The numbers of an impact, and what is to be derived.
 #[derive(Clone, Debug)]
 pub struct Setup {
-    /// The swing without the barrier, a force of the position alone; the pendulum where none is given.
+    /// The swing without the barrier, a force of the position alone; the pendulum where none is
+    /// given.
     pub swing: Option<Oscillator>,
     /// Values of the parameters of the swing and of the law of the barrier.
     pub values: Values,
@@ -53,14 +57,16 @@ pub struct Setup {
     pub stiffness: f64,
     /// Where gamma comes from, in words.
     pub stiffness_source: String,
-    /// The pendulum in SI units, which must agree with `stiffness`; without it the answer is dimensionless alone.
+    /// The pendulum in SI units, which must agree with `stiffness`; without it the answer is
+    /// dimensionless alone.
     pub units: Option<Units>,
-    /// The whole force of the barrier as an expression in the depth `d` and in parameters, `gamma` among them; without it that of
-    /// Hertz, `gamma*d^(3/2)`.
+    /// The whole force of the barrier as an expression in the depth `d` and in parameters, `gamma`
+    /// among them; without it that of Hertz, `gamma*d^(3/2)`.
     pub force: Option<Expr>,
     /// Who derives the swing of the derived column; without it the first of a few that passes.
     pub method: Option<Method>,
-    /// Order of the law; without it 2 for the paper's reading, and for the derived column the lowest that passes.
+    /// Order of the law; without it 2 for the paper's reading, and for the derived column the
+    /// lowest that passes.
     pub order: Option<u32>,
     /// The degrees of an approximant.
     pub degrees: Option<Degrees>,
@@ -87,11 +93,13 @@ pub struct Setup {
 pub enum ContactLoss {
     /// lambda, positive, in units of time over the unit of x: mu/gamma in equation (7).
     Damping(f64),
-    /// The coefficient of restitution, above 0 and below 1, at the speed that the energy of the swing gives the touch.
+    /// The coefficient of restitution, above 0 and below 1, at the speed that the energy of the
+    /// swing gives the touch.
     Restitution(f64),
 }
 
-/// The default pendulum: released at -1.5 rad, the barrier at 0.323, the stiffness of its design by equation (8).
+/// The default pendulum: released at -1.5 rad, the barrier at 0.323, the stiffness of its design by
+/// equation (8).
 impl Default for Setup {
     fn default() -> Self {
         Self {
@@ -156,7 +164,9 @@ pub enum SetupError {
         name: Symbol,
     },
     /// A swing about which the paper says nothing.
-    #[error("the paper's cosine is that of a swing about x = 0 with f(-x) = -f(x), but the force is `{force}`")]
+    #[error(
+        "the paper's cosine is that of a swing about x = 0 with f(-x) = -f(x), but the force is `{force}`"
+    )]
     NotOdd {
         /// The force.
         force: String,
@@ -220,7 +230,8 @@ pub(super) struct Equations {
     pub(super) letters: Letters,
     /// The equation that is judged.
     pub(super) judged: String,
-    /// The stiffness that multiplies the elastic force: gamma, or one where the force was given whole.
+    /// The stiffness that multiplies the elastic force: gamma, or one where the force was given
+    /// whole.
     pub(super) stiffness: f64,
     /// f(x), f'(x) and F(depth), each with gamma beside it.
     forces: [CompiledFunction; 3],
@@ -229,7 +240,8 @@ pub(super) struct Equations {
     near_touch: Option<NearTouch>,
 }
 
-/// The Taylor polynomial of a contact force that is a difference of nearly equal numbers near the touch.
+/// The Taylor polynomial of a contact force that is a difference of nearly equal numbers near the
+/// touch.
 struct NearTouch {
     /// In q, with depth = q^root: so a force with roots of the depth has one as well.
     polynomial: NearRest,
@@ -251,11 +263,12 @@ fn power_of(symbol: Symbol, term: &Expr) -> Option<Rational> {
 }
 
 impl NearTouch {
-    /// The roots of the depth that the polynomial can be in: a force of higher ones is left as it is typed.
+    /// The roots of the depth that the polynomial can be in: a force of higher ones is left as it
+    /// is typed.
     const HIGHEST_ROOT: u32 = 12;
 
-    /// The polynomial of this force of the depth; `None` where the force keeps its digits, does not vanish at the touch, or is
-    /// not analytic in a root of the depth.
+    /// The polynomial of this force of the depth; `None` where the force keeps its digits, does not
+    /// vanish at the touch, or is not analytic in a root of the depth.
     fn new(force: &Expr, depth: Symbol, stiffness: (Symbol, f64)) -> Option<Self> {
         /// A depth below all that matter: digits that are there at this one are there everywhere.
         const SMALLEST: f64 = 1e-12;
@@ -269,10 +282,13 @@ impl NearTouch {
             Node::Power(base, exponent) if base.contains(depth) => exponent.as_number(),
             _ => None,
         });
-        let root = exponents.fold(Integer::from(1), |root, exponent| root.lcm(exponent.denom()));
+        let root = exponents.fold(Integer::from(1), |root, exponent| {
+            root.lcm(exponent.denom())
+        });
         let root = root.to_u32().filter(|root| *root <= Self::HIGHEST_ROOT)?;
         let q = Expr::from(depth);
-        // sqrt(q^2 + q^4) = q sqrt(1 + q^2): the power of q that all terms of a base have is taken out of its root.
+        // sqrt(q^2 + q^4) = q sqrt(1 + q^2): the power of q that all terms of a base have is taken
+        // out of its root.
         let in_root = force.fold(|part, children: &[Expr]| match (part.node(), children) {
             (Node::Symbol(name), _) if *name == depth => q.integer_power(root.into()),
             (Node::Power(_, exponent), [base, _]) if base.contains(depth) => {
@@ -339,7 +355,12 @@ impl Setup {
     }
 
     /// The equation with the barrier in it, whose force is `written` in the depth.
-    fn judged(&self, swing: &Oscillator, letters: Letters, written: &Expr) -> Result<Equation, ExprError> {
+    fn judged(
+        &self,
+        swing: &Oscillator,
+        letters: Letters,
+        written: &Expr,
+    ) -> Result<Equation, ExprError> {
         let x = letters.coordinate;
         let sign = Expr::from(match self.side {
             Side::Left => -1,
@@ -365,7 +386,8 @@ impl Setup {
     /// The equations and their forces.
     ///
     /// # Errors
-    /// A swing that is none or whose force depends on more than the position; a parameter without a value.
+    /// A swing that is none or whose force depends on more than the position; a parameter without a
+    /// value.
     pub(super) fn equations(&self) -> Result<Equations, SetupError> {
         let swing = match &self.swing {
             Some(swing) => swing.clone(),
@@ -390,8 +412,12 @@ impl Setup {
         }
         let letters = self.letters(&swing);
         let own = |name: &Symbol| {
-            let of_force = self.force.as_ref().is_some_and(|force| force.contains(*name));
-            swing.parameters.contains(name) || of_force && *name != letters.stiffness && *name != letters.depth
+            let of_force = self
+                .force
+                .as_ref()
+                .is_some_and(|force| force.contains(*name));
+            swing.parameters.contains(name)
+                || of_force && *name != letters.stiffness && *name != letters.depth
         };
         if let Some((name, _)) = self.values.iter().find(|(name, _)| !own(name)) {
             return Err(SetupError::Unknown { name });
@@ -417,16 +443,26 @@ impl Setup {
         let function = |expression: &Expr, argument: Symbol| {
             let expression = in_numbers(expression)?;
             let known = [argument, letters.stiffness, Symbol::new("pi")];
-            match expression.symbols().into_iter().find(|name| !known.contains(name)) {
+            match expression
+                .symbols()
+                .into_iter()
+                .find(|name| !known.contains(name))
+            {
                 Some(name) => Err(SetupError::NoValue { name }),
-                None => Ok(CompiledFunction::new(&expression, &[argument, letters.stiffness])?),
+                None => Ok(CompiledFunction::new(
+                    &expression,
+                    &[argument, letters.stiffness],
+                )?),
             }
         };
         let (known, rest) = self.values.split(&swing.parameters);
         let numerical = with_numbers_where_needed(&swing, &known)?;
         let swing_in_numbers = swing.with_values(&known)?;
         let centred = centred(&swing_in_numbers, None).ok();
-        if centred.as_ref().is_some_and(|centred| centred.cross_well.is_some()) {
+        if centred
+            .as_ref()
+            .is_some_and(|centred| centred.cross_well.is_some())
+        {
             return Err(no_bottom(&swing_in_numbers).into());
         }
         let position = centred.as_ref().map(|centred| &centred.position);
@@ -462,7 +498,11 @@ impl Setup {
             ),
             gamma: self.stiffness,
             judged: judged.to_string(),
-            values: if numerical.is_some() { rest } else { self.values.clone() },
+            values: if numerical.is_some() {
+                rest
+            } else {
+                self.values.clone()
+            },
             swing: numerical.unwrap_or(swing),
             letters,
             stiffness,

@@ -1,8 +1,9 @@
 //! The numbers of an impact in SI units, and what they say: whether a body yields.
 //!
-//! In: an [`Impact`] whose [`Setup`](super::Setup) has [`Units`]. Out: an [`SiImpact`], every number by Runge-Kutta and by each
-//! closed form. The peak force is that of Hertz at the greatest depth, also where a line stood for it; of a damped contact the greatest
-//! there is, which comes before.
+//! In: an [`Impact`] whose [`Setup`](super::Setup) has [`Units`]. Out: an [`SiImpact`], every
+//! number by Runge-Kutta and by each closed form. The peak force is that of Hertz at the greatest
+//! depth, also where a line stood for it; of a damped contact the greatest there is, which comes
+//! before.
 
 use super::closed_form::{Impact, Quantity};
 use super::contact::hunt_crossley;
@@ -29,9 +30,11 @@ pub struct SiImpact {
     pub duration: Quantity,
     /// From release to release, s.
     pub period: Quantity,
-    /// The greatest force of the contact, its damping included, N; without damping that at the greatest depth.
+    /// The greatest force of the contact, its damping included, N; without damping that at the
+    /// greatest depth.
     pub peak_force: Quantity,
-    /// The pressure of Hertz in its middle at the greatest depth, Pa; nothing where the radius is not known.
+    /// The pressure of Hertz in its middle at the greatest depth, Pa; nothing where the radius is
+    /// not known.
     pub peak_pressure: Option<Quantity>,
 }
 
@@ -56,7 +59,8 @@ impl YieldCheck {
 }
 
 impl Impact {
-    /// The same numbers in SI units; nothing where no units are known, or where a number is beyond the range of doubles.
+    /// The same numbers in SI units; nothing where no units are known, or where a number is beyond
+    /// the range of doubles.
     pub fn si(&self) -> Option<SiImpact> {
         let units = self.setup.units?;
         let gamma = self.setup.stiffness;
@@ -84,11 +88,19 @@ impl Impact {
                 Some(_) => Quantity {
                     name: "peak force",
                     runge_kutta: units.force() * self.greatest_force(),
-                    closed_forms: speed.closed_forms.iter().map(|speed| damped_force(*speed)).collect(),
+                    closed_forms: speed
+                        .closed_forms
+                        .iter()
+                        .map(|speed| damped_force(*speed))
+                        .collect(),
                 },
             },
             peak_pressure: units.radius.map(|_| {
-                let pressure = |depth| units.pressure(force(depth), metres(depth)).unwrap_or(f64::NAN);
+                let pressure = |depth| {
+                    units
+                        .pressure(force(depth), metres(depth))
+                        .unwrap_or(f64::NAN)
+                };
                 converted("peak pressure", &penetration, pressure)
             }),
         };
@@ -103,7 +115,9 @@ impl Impact {
     fn greatest_force(&self) -> f64 {
         let contact = &self.truth.contact;
         let force = |t: f64| match contact.at(t) {
-            Some((depth, speed)) => hertz::force(self.setup.stiffness * (1.0 + self.damping * speed), depth),
+            Some((depth, speed)) => {
+                hertz::force(self.setup.stiffness * (1.0 + self.damping * speed), depth)
+            }
             None => 0.0,
         };
         greatest(force, 0.0, self.truth.duration)
@@ -115,7 +129,11 @@ fn converted(name: &'static str, quantity: &Quantity, convert: impl Fn(f64) -> f
     Quantity {
         name,
         runge_kutta: convert(quantity.runge_kutta),
-        closed_forms: quantity.closed_forms.iter().map(|value| convert(*value)).collect(),
+        closed_forms: quantity
+            .closed_forms
+            .iter()
+            .map(|value| convert(*value))
+            .collect(),
     }
 }
 

@@ -6,11 +6,11 @@
 //! E(t) - E(0) = W_viscous + W_friction + W_contact + W_excitation
 //! ```
 //!
-//! In: a [`Model`], a [`Start`], [`Settings`]. Out: a [`Simulation`], by one of two integrators that share the forces of
-//! the model and nothing else:
+//! In: a [`Model`], a [`Start`], [`Settings`]. Out: a [`Simulation`], by one of two integrators
+//! that share the forces of the model and nothing else:
 //!
-//! - [`Integrator::Taylor`], the fast one: power series, in contact those of the regularised equation, and the events as
-//!   roots of polynomials.
+//! - [`Integrator::Taylor`], the fast one: power series, in contact those of the regularised
+//!   equation, and the events as roots of polynomials.
 //! - [`Integrator::RungeKutta`], the judge: the library's Runge-Kutta in phases.
 //! - [`Integrator::Chain`], which does not integrate: closed forms, good to a part of a percent.
 
@@ -40,7 +40,9 @@ pub enum SimulationError {
     )]
     TooSmall(f64),
     /// A tolerance no double-precision run can keep.
-    #[error("the integrator's tolerance must lie between 1e-15 and 0.01, not {0:e}: 1e-10 is a good choice")]
+    #[error(
+        "the integrator's tolerance must lie between 1e-15 and 0.01, not {0:e}: 1e-10 is a good choice"
+    )]
     Tolerance(f64),
     /// There is no chain of closed forms.
     #[error(transparent)]
@@ -56,7 +58,8 @@ const SMALLEST: f64 = 1e-100;
 /// The motion from this start.
 ///
 /// # Errors
-/// [`SimulationError`] where it cannot begin. One that ends early is no error: ask [`Simulation::stop`].
+/// [`SimulationError`] where it cannot begin. One that ends early is no error: ask
+/// [`Simulation::stop`].
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -83,9 +86,10 @@ pub fn simulate(
     }
 }
 
-/// The time until which a motion with a moving pivot is known to six digits of its size, one of two thousand in it; beyond it a start displaced
-/// by [`DISPLACEMENT`] of it leads elsewhere. `None` where it is known to the end, where the pivot is at rest, whose motions are regular, or
-/// without a path. Costs as much as the motion.
+/// The time until which a motion with a moving pivot is known to six digits of its size, one of two
+/// thousand in it; beyond it a start displaced by [`DISPLACEMENT`] of it leads elsewhere. `None`
+/// where it is known to the end, where the pivot is at rest, whose motions are regular, or without
+/// a path. Costs as much as the motion.
 ///
 /// ```text
 /// errors of the integration grow as the displacement does: six digits are lost where it has grown 1e-6/tolerance times
@@ -106,7 +110,15 @@ pub fn known_until(motion: &Simulation) -> Option<f64> {
     if motion.model.beta == 0.0 || matches!(motion.stop, Stop::Interrupted { .. }) {
         return None;
     }
-    let displaced = |value: f64| value + DISPLACEMENT * if value == 0.0 { motion.model.beta } else { value };
+    let displaced = |value: f64| {
+        value
+            + DISPLACEMENT
+                * if value == 0.0 {
+                    motion.model.beta
+                } else {
+                    value
+                }
+    };
     let start = Start {
         x: displaced(motion.start.x),
         velocity: displaced(motion.start.velocity),
@@ -118,14 +130,17 @@ pub fn known_until(motion: &Simulation) -> Option<f64> {
         Some((time, motion.path.at(time)?.0, other.path.at(time)?.0))
     });
     let places: Vec<(f64, f64, f64)> = places.collect();
-    let size = places.iter().fold(0.0_f64, |size, (_, x, _)| size.max(x.abs()));
+    let size = places
+        .iter()
+        .fold(0.0_f64, |size, (_, x, _)| size.max(x.abs()));
     let lost = DISPLACEMENT * SIX_DIGITS / motion.settings.relative_tolerance.max(f64::EPSILON);
     let is_lost = |(_, x, other): &&(f64, f64, f64)| (x - other).abs() > lost * size;
     let first = places.iter().position(|place| is_lost(&place))?;
     Some(first.checked_sub(1).map_or(0.0, |last| places[last].0))
 }
 
-/// Many motions on one core, by Taylor series, several at a time: each exactly what [`simulate`] makes of it.
+/// Many motions on one core, by Taylor series, several at a time: each exactly what [`simulate`]
+/// makes of it.
 ///
 /// # Errors
 /// As [`simulate`], for the first that cannot begin, with its number.

@@ -1,8 +1,9 @@
-//! Many motions: any number of parameters, each with its values, on all cores, and what an engineer asks of each.
+//! Many motions: any number of parameters, each with its values, on all cores, and what an engineer
+//! asks of each.
 //!
-//! In: motions, in the order of their numbers, such as those of the grid of some [`Axis`]. Out: a [`Summary`] each, in that
-//! order. Every motion is followed by the same operations wherever it runs, so the result does not depend on the number of
-//! threads.
+//! In: motions, in the order of their numbers, such as those of the grid of some [`Axis`]. Out: a
+//! [`Summary`] each, in that order. Every motion is followed by the same operations wherever it
+//! runs, so the result does not depend on the number of threads.
 //!
 //! ```
 //! # use lindstedt_impact as lindstedt;
@@ -36,7 +37,9 @@ const CHUNK: usize = 96;
 
 /// More motions than a sweep may have.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("the sweep has {counts} = {product} motions, more than {MOST_MOTIONS} motions: lower the counts")]
+#[error(
+    "the sweep has {counts} = {product} motions, more than {MOST_MOTIONS} motions: lower the counts"
+)]
 pub struct TooMany {
     /// The numbers of values, `2000 * 2000`.
     pub counts: String,
@@ -60,20 +63,24 @@ pub struct TooMany {
 pub fn grid_size(axes: &[Axis]) -> Result<usize, TooMany> {
     let counts = axes.iter().map(|axis| axis.values().len());
     let product = counts.clone().try_fold(1_usize, usize::checked_mul);
-    product.filter(|product| *product <= MOST_MOTIONS).ok_or_else(|| {
-        let counts: Vec<String> = counts.clone().map(|count| count.to_string()).collect();
-        let product = match product {
-            Some(product) => product.to_string(),
-            None => format!(
-                "{:.2e}",
-                axes.iter().map(|axis| axis.values().len() as f64).product::<f64>()
-            ),
-        };
-        TooMany {
-            counts: counts.join(" * "),
-            product,
-        }
-    })
+    product
+        .filter(|product| *product <= MOST_MOTIONS)
+        .ok_or_else(|| {
+            let counts: Vec<String> = counts.clone().map(|count| count.to_string()).collect();
+            let product = match product {
+                Some(product) => product.to_string(),
+                None => format!(
+                    "{:.2e}",
+                    axes.iter()
+                        .map(|axis| axis.values().len() as f64)
+                        .product::<f64>()
+                ),
+            };
+            TooMany {
+                counts: counts.join(" * "),
+                product,
+            }
+        })
 }
 
 /// The values of the parameters in the motion of this number, where the last axis varies fastest.
@@ -104,9 +111,11 @@ pub fn grid_values(axes: &[Axis], number: usize) -> Vec<f64> {
 pub struct Summary {
     /// Number of contacts.
     pub impacts: usize,
-    /// When the envelope fell to a tenth of the first swing, in units of 1/omega; or why it did not.
+    /// When the envelope fell to a tenth of the first swing, in units of 1/omega; or why it did
+    /// not.
     pub rest_time: Result<f64, NoRest>,
-    /// The rest times of the same swing without a barrier and with a lossless one, where they were asked for.
+    /// The rest times of the same swing without a barrier and with a lossless one, where they were
+    /// asked for.
     pub baseline: Option<[Result<f64, NoRest>; 2]>,
     /// The greatest depth in a barrier, rad; 0 without contact.
     pub deepest: f64,
@@ -132,7 +141,8 @@ impl Summary {
 
     /// What there is to say of a motion.
     pub fn of(motion: &Simulation) -> Self {
-        let largest = |value: fn(&Contact) -> f64| motion.impacts.iter().map(value).fold(0.0, f64::max);
+        let largest =
+            |value: fn(&Contact) -> f64| motion.impacts.iter().map(value).fold(0.0, f64::max);
         Self {
             impacts: motion.impacts.len(),
             rest_time: motion.rest().time,
@@ -153,8 +163,8 @@ impl Summary {
     }
 }
 
-/// Follows every motion, on all threads of the current pool (on one without the feature `parallel`); `progress` hears how many
-/// more are done.
+/// Follows every motion, on all threads of the current pool (on one without the feature
+/// `parallel`); `progress` hears how many more are done.
 ///
 /// # Errors
 /// [`SimulationError`] and the number of the first motion that cannot begin.
@@ -181,8 +191,8 @@ pub fn sweep(
         ..*settings
     };
     let run = |(chunk, motions): &(usize, &[(Model, Start)])| {
-        let found =
-            summaries(motions, integrator, &settings).map_err(|(number, error)| (chunk * CHUNK + number, error))?;
+        let found = summaries(motions, integrator, &settings)
+            .map_err(|(number, error)| (chunk * CHUNK + number, error))?;
         progress(motions.len());
         Ok(found)
     };

@@ -1,8 +1,9 @@
-//! A trial: the question of an impact, its true motion, and derived phases that are judged against it.
+//! A trial: the question of an impact, its true motion, and derived phases that are judged against
+//! it.
 //!
-//! In: a [`Setup`](super::Setup) and the methods to try. Out: the derived phases of the first order and method that pass, and an
-//! [`Attempt`] for each that was tried. Everything that is judged is so in z = s (x - x_e), which runs from the equilibrium
-//! towards the barrier.
+//! In: a [`Setup`](super::Setup) and the methods to try. Out: the derived phases of the first order
+//! and method that pass, and an [`Attempt`] for each that was tried. Everything that is judged is
+//! so in z = s (x - x_e), which runs from the equilibrium towards the barrier.
 
 use super::collision::{Collision, CollisionError};
 use super::contact::hunt_crossley::{damping_for, restitution};
@@ -26,8 +27,9 @@ pub struct Attempt {
     pub order: Option<u32>,
     /// Its degrees, where it was given some.
     pub degrees: Option<Degrees>,
-    /// The largest error, relative; of the five numbers alone where one of them is beyond the tolerance already. Where the contact is
-    /// not the exact one, that of the approach. Or why there is none.
+    /// The largest error, relative; of the five numbers alone where one of them is beyond the
+    /// tolerance already. Where the contact is not the exact one, that of the approach. Or why
+    /// there is none.
     pub error: Result<f64, String>,
 }
 
@@ -80,7 +82,8 @@ fn attempts(tried: &[Attempt]) -> String {
 pub(super) struct Trial<'a> {
     pub(super) setup: &'a Setup,
     pub(super) equations: &'a Equations,
-    /// Where the cycle starts, in x: the release, or the turning point of a motion released inside the barrier.
+    /// Where the cycle starts, in x: the release, or the turning point of a motion released inside
+    /// the barrier.
     pub(super) turning_point: f64,
     /// What is judged, in z.
     pub(super) collision: Collision<'a>,
@@ -104,8 +107,9 @@ pub(super) struct Derived {
 /// What a method is asked for: an order, or degrees.
 type Rung = (Option<u32>, Option<Degrees>);
 
-/// The highest order of a method that is tried where none is asked for: expansions and balances go on for long, the others become
-/// slow, and a third pass of iteration perturbation may take minutes.
+/// The highest order of a method that is tried where none is asked for: expansions and balances go
+/// on for long, the others become slow, and a third pass of iteration perturbation may take
+/// minutes.
 fn highest_order(method: Method) -> u32 {
     match method {
         Method::LindstedtPoincare | Method::HarmonicBalance => 16,
@@ -122,7 +126,10 @@ impl Trial<'_> {
     ///
     /// # Errors
     /// A barrier out of reach, a release from which nothing swings to it, numbers that are none.
-    pub(super) fn run<R>(setup: &Setup, body: impl FnOnce(&Trial) -> Result<R, ImpactError>) -> Result<R, ImpactError> {
+    pub(super) fn run<R>(
+        setup: &Setup,
+        body: impl FnOnce(&Trial) -> Result<R, ImpactError>,
+    ) -> Result<R, ImpactError> {
         let equations = setup.equations()?;
         let (sign, origin) = (setup.side.sign(), equations.equilibrium);
         let z = |x: f64| sign * (x - origin);
@@ -154,13 +161,20 @@ impl Trial<'_> {
             Some(ContactLoss::Restitution(wanted)) => damping_for(wanted)? / energy_speed,
         };
         restitution(damping * energy_speed)?;
-        if let (Some(_), None, Some(force)) = (setup.loss, exponent_of(collision.elastic_force), &setup.force) {
+        if let (Some(_), None, Some(force)) = (
+            setup.loss,
+            exponent_of(collision.elastic_force),
+            &setup.force,
+        ) {
             return Err(SetupError::NoPower {
                 force: force.to_string(),
             }
             .into());
         }
-        let collision = Collision { damping, ..collision };
+        let collision = Collision {
+            damping,
+            ..collision
+        };
         let options = Options {
             maximum_steps: setup.step_limit as usize,
             ..Options::with_tolerance(setup.integrator_tolerance)
@@ -189,7 +203,8 @@ impl Trial<'_> {
         deviation(&seen, &self.truth)
     }
 
-    /// The derived phases of the first of these methods that passes, else the best; and what was tried.
+    /// The derived phases of the first of these methods that passes, else the best; and what was
+    /// tried.
     pub(super) fn derived(&self, methods: &[Method]) -> (Option<Derived>, Vec<Attempt>) {
         let mut tried: Vec<Attempt> = Vec::new();
         let mut best: Option<Derived> = None;
@@ -197,14 +212,18 @@ impl Trial<'_> {
             let (found, attempts) = self.climb(method);
             tried.extend(attempts);
             best = closer(best, found);
-            if best.as_ref().is_some_and(|best| best.error <= self.setup.tolerance) {
+            if best
+                .as_ref()
+                .is_some_and(|best| best.error <= self.setup.tolerance)
+            {
                 break;
             }
         }
         (best, tried)
     }
 
-    /// The derived phases of a method: at the order asked for, or at the lowest that passes, else at the best.
+    /// The derived phases of a method: at the order asked for, or at the lowest that passes, else
+    /// at the best.
     fn climb(&self, method: Method) -> (Option<Derived>, Vec<Attempt>) {
         let setup = self.setup;
         let takes = |choice| Entry::of(method).takes(choice);
@@ -213,10 +232,12 @@ impl Trial<'_> {
             _ => None,
         };
         let rungs: Vec<Rung> = match (setup.order, setup.degrees) {
-            (None, None) if takes(Choice::Degrees) => (1..=highest_order(method)).map(|n| (None, same(n))).collect(),
-            (None, None) if takes(Choice::Order) => {
-                (1..=highest_order(method)).map(|order| (Some(order), None)).collect()
-            }
+            (None, None) if takes(Choice::Degrees) => (1..=highest_order(method))
+                .map(|n| (None, same(n)))
+                .collect(),
+            (None, None) if takes(Choice::Order) => (1..=highest_order(method))
+                .map(|order| (Some(order), None))
+                .collect(),
             chosen => vec![chosen],
         };
         let mut tried: Vec<Attempt> = Vec::new();
@@ -230,11 +251,17 @@ impl Trial<'_> {
                 amplitude: setup.amplitude_convention,
                 ..Default::default()
             };
-            let flight = Flight::derive(self.equations, [self.turning_point, -setup.side.sign()], &options);
+            let flight = Flight::derive(
+                self.equations,
+                [self.turning_point, -setup.side.sign()],
+                &options,
+            );
             // An order that adds nothing to a formula is passed over.
             let solution = flight.as_ref().ok().map(|flight| &flight.solution);
             let same = |last: &Solution, new: &Solution| {
-                last.law == new.law && last.displacement == new.displacement && !new.displacement.is_zero()
+                last.law == new.law
+                    && last.displacement == new.displacement
+                    && !new.displacement.is_zero()
             };
             if let (Some(last), Some(new)) = (&last, solution)
                 && same(last, new)
@@ -243,10 +270,12 @@ impl Trial<'_> {
             }
             last = solution.cloned();
             // What refuses an order refuses those above it; the first may be too low.
-            let refused = matches!(flight, Err(NoFlight::Refusal(_))) && order.is_none_or(|order| order > 2);
+            let refused =
+                matches!(flight, Err(NoFlight::Refusal(_))) && order.is_none_or(|order| order > 2);
             let found = flight.and_then(|flight| self.with_contact(flight));
             // A law that does not apply to this contact does so at no order.
-            let no_law = matches!(found, Err(NoFlight::Contact(_))) && self.contact(self.energy_speed).is_err();
+            let no_law = matches!(found, Err(NoFlight::Contact(_)))
+                && self.contact(self.energy_speed).is_err();
             tried.push(Attempt {
                 method,
                 order,
@@ -261,10 +290,17 @@ impl Trial<'_> {
             let error = |attempt: &Attempt| attempt.error.clone().unwrap_or(f64::INFINITY);
             let stalls = tried.len() > PATIENCE && {
                 let (before, lately) = tried.split_at(tried.len() - PATIENCE);
-                let least = |attempts: &[Attempt]| attempts.iter().map(error).fold(f64::INFINITY, f64::min);
+                let least =
+                    |attempts: &[Attempt]| attempts.iter().map(error).fold(f64::INFINITY, f64::min);
                 least(lately) >= least(before)
             };
-            if refused || no_law || stalls || best.as_ref().is_some_and(|best| best.error <= setup.tolerance) {
+            if refused
+                || no_law
+                || stalls
+                || best
+                    .as_ref()
+                    .is_some_and(|best| best.error <= setup.tolerance)
+            {
                 break;
             }
         }
@@ -275,8 +311,15 @@ impl Trial<'_> {
     fn with_contact(&self, flight: Flight) -> Result<Derived, NoFlight> {
         let (touch, speed) = flight.touch(self.setup.barrier)?;
         let contact = self.contact(speed)?;
-        let phases = phases_of(&flight, self.equations, self.setup.barrier, [touch, speed], &contact)?;
-        // A law of the contact that is far off must not be made up for by the swing: that is chosen by its flight.
+        let phases = phases_of(
+            &flight,
+            self.equations,
+            self.setup.barrier,
+            [touch, speed],
+            &contact,
+        )?;
+        // A law of the contact that is far off must not be made up for by the swing: that is chosen
+        // by its flight.
         let is_exact = self.setup.contact_law == ContactLaw::Exact && self.setup.loss.is_none();
         let numbers = self.number_errors(&phases);
         // What misses a number is not followed through its phases.
@@ -298,11 +341,14 @@ impl Trial<'_> {
     fn contact(&self, speed: f64) -> Result<DerivedContact, ContactError> {
         let touch = self.touch(speed);
         match self.setup.loss {
-            None => Ok(DerivedContact::Elastic(Box::new(touch.by(self.setup.contact_law)?))),
+            None => Ok(DerivedContact::Elastic(Box::new(
+                touch.by(self.setup.contact_law)?,
+            ))),
             Some(_) => {
                 let exponent = touch.exponent.ok_or(ContactError::NoPowerLaw)?;
                 let stiffness = touch.stiffness * (touch.elastic_force)(1.0);
-                let contact = HuntCrossley::new(exponent, stiffness, self.collision.damping, speed)?;
+                let contact =
+                    HuntCrossley::new(exponent, stiffness, self.collision.damping, speed)?;
                 Ok(DerivedContact::Damped(Box::new(contact)))
             }
         }
@@ -336,8 +382,9 @@ impl Trial<'_> {
         }
     }
 
-    /// The relative errors of three phases in x: time to contact, speed, penetration, duration, period, and the largest deviation in
-    /// each phase on its own clock, of the flights over the amplitude and of the contact over the depth.
+    /// The relative errors of three phases in x: time to contact, speed, penetration, duration,
+    /// period, and the largest deviation in each phase on its own clock, of the flights over the
+    /// amplitude and of the contact over the depth.
     pub(super) fn errors(&self, phases: &ThreePhases) -> [f64; 8] {
         let amplitude = self.collision.release.abs();
         let [approach, contact, back] = self.deviation(phases).aligned;
@@ -371,8 +418,10 @@ fn closer(one: Option<Derived>, other: Option<Derived>) -> Option<Derived> {
 
 /// The largest of them in size; what is no number is the largest.
 pub(super) fn worst<'a>(errors: impl IntoIterator<Item = &'a f64>) -> f64 {
-    errors.into_iter().fold(0.0, |worst: f64, error| match error.is_nan() {
-        true => f64::INFINITY,
-        false => worst.max(error.abs()),
-    })
+    errors
+        .into_iter()
+        .fold(0.0, |worst: f64, error| match error.is_nan() {
+            true => f64::INFINITY,
+            false => worst.max(error.abs()),
+        })
 }

@@ -1,7 +1,9 @@
-//! The pendulum in SI units: what a dimensionless number of the paper's equation (9) is in seconds, metres and newtons.
+//! The pendulum in SI units: what a dimensionless number of the paper's equation (9) is in seconds,
+//! metres and newtons.
 //!
-//! In: mass, length and gravity of the pendulum, radius and moduli of the bodies that meet. Out: the units of its numbers, the
-//! modulus that both bodies have together, and the pressure where they meet. With x the angle, d = L (x - x_c) the depth in m,
+//! In: mass, length and gravity of the pendulum, radius and moduli of the bodies that meet. Out:
+//! the units of its numbers, the modulus that both bodies have together, and the pressure where
+//! they meet. With x the angle, d = L (x - x_c) the depth in m,
 //!
 //! ```text
 //! m L^2 x'' + m g L sin x + k d^(3/2) L = 0,   k = (4/3) E sqrt(R)            the motion in SI units
@@ -12,13 +14,15 @@
 //!    = (6 F E^2 / (pi^3 R^2))^(1/3)                                           the same, with the E of k
 //! ```
 //!
-//! The paper's equation (3) has the modulus of the barrier alone for E. Ductile bodies with nu = 0.3 begin to yield, below the
-//! middle of the contact, where p0 reaches 1.6 times the yield limit Y of the softer one: above that the law of Hertz no
-//! longer holds (K. L. Johnson, *Contact Mechanics*, 1985, chapters 4 and 6).
+//! The paper's equation (3) has the modulus of the barrier alone for E. Ductile bodies with nu
+//! = 0.3 begin to yield, below the middle of the contact, where p0 reaches 1.6 times the yield limit
+//! Y of the softer one: above that the law of Hertz no longer holds (K. L. Johnson, *Contact
+//! Mechanics*, 1985, chapters 4 and 6).
 
 use std::f64::consts::PI;
 
-/// The pressure in the middle of a contact at which bodies with nu = 0.3 begin to yield, over their yield limit.
+/// The pressure in the middle of a contact at which bodies with nu = 0.3 begin to yield, over their
+/// yield limit.
 pub const FIRST_YIELD: f64 = 1.6;
 
 /// An elastic body, by what tables of materials print.
@@ -118,15 +122,18 @@ impl Units {
         stiffness * self.force() / self.length.powf(1.5)
     }
 
-    /// The pressure p0 = 3 F/(2 pi R d) in the middle of a contact, Pa, by its force in N and its depth in m; nothing without
-    /// a radius.
+    /// The pressure p0 = 3 F/(2 pi R d) in the middle of a contact, Pa, by its force in N and its
+    /// depth in m; nothing without a radius.
     pub fn pressure(&self, force: f64, depth: f64) -> Option<f64> {
         Some(1.5 * force / (PI * self.radius? * depth))
     }
 
     /// The bodies with a stated yield limit, and that limit, Pa.
     pub fn yield_limits(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        let limits = [("sphere", self.sphere_yield), ("barrier", self.barrier_yield)];
+        let limits = [
+            ("sphere", self.sphere_yield),
+            ("barrier", self.barrier_yield),
+        ];
         limits
             .into_iter()
             .filter_map(|(body, limit)| limit.map(|limit| (body, limit)))
@@ -148,12 +155,21 @@ mod tests {
             modulus: 1e300,
             poisson: 0.3,
         };
-        let together = |sphere| Modulus::Both { barrier: steel, sphere }.value();
+        let together = |sphere| {
+            Modulus::Both {
+                barrier: steel,
+                sphere,
+            }
+            .value()
+        };
         assert!((together(rigid) / Modulus::RigidSphere(steel).value() - 1.0).abs() < 1e-15);
         assert!((together(rigid) / (2e11 / 0.91) - 1.0).abs() < 1e-15);
         assert!((together(steel) / (1e11 / 0.91) - 1.0).abs() < 1e-15);
         // Without lateral strain a rigid sphere meets the modulus of the barrier itself.
-        let cork = Elastic { poisson: 0.0, ..steel };
+        let cork = Elastic {
+            poisson: 0.0,
+            ..steel
+        };
         assert_eq!(
             Modulus::RigidSphere(cork).value(),
             Modulus::BarrierAlone(cork.modulus).value()
@@ -180,8 +196,13 @@ mod tests {
             let force = units.force() * hertz::force(gamma, angle);
             assert!((force / (stiffness * depth.powf(1.5)) - 1.0).abs() < 1e-14);
             let pressure = units.pressure(force, depth).unwrap();
-            let by_force = (6.0 * force * design.modulus.powi(2) / (PI.powi(3) * design.radius.powi(2))).cbrt();
-            assert!((pressure / by_force - 1.0).abs() < 1e-14, "{pressure} and {by_force}");
+            let by_force = (6.0 * force * design.modulus.powi(2)
+                / (PI.powi(3) * design.radius.powi(2)))
+            .cbrt();
+            assert!(
+                (pressure / by_force - 1.0).abs() < 1e-14,
+                "{pressure} and {by_force}"
+            );
             // The mean pressure is two thirds of it.
             let area = PI * design.radius * depth;
             assert!((force / area / pressure - 2.0 / 3.0).abs() < 1e-14);

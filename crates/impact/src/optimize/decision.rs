@@ -1,4 +1,5 @@
-//! What decides the best design: found by moving every variable alone, by designs drawn around it, and by the unit of the rest time.
+//! What decides the best design: found by moving every variable alone, by designs drawn around it,
+//! and by the unit of the rest time.
 //!
 //! ```text
 //! elasticity      (p/T) dT/dp, by steps of 1 % of p, of motions that are integrated
@@ -42,7 +43,13 @@ pub enum Role {
 
 impl Role {
     /// Every role.
-    pub const ALL: [Self; 5] = [Self::Flat, Self::Lower, Self::Upper, Self::Limit, Self::Trade];
+    pub const ALL: [Self; 5] = [
+        Self::Flat,
+        Self::Lower,
+        Self::Upper,
+        Self::Limit,
+        Self::Trade,
+    ];
 
     /// In a word or two.
     pub const fn name(self) -> &'static str {
@@ -69,8 +76,8 @@ pub struct Sensitivity {
     pub elasticity: Option<f64>,
     /// Between these values, the others held, the objective is no more than 1 % worse.
     pub alone: [f64; 2],
-    /// The least and the greatest value of the objective on its whole range, the others held, constraints aside; nothing where the motion
-    /// does not rest somewhere.
+    /// The least and the greatest value of the objective on its whole range, the others held,
+    /// constraints aside; nothing where the motion does not rest somewhere.
     pub range: Option<[f64; 2]>,
     /// What follows.
     pub role: Role,
@@ -85,7 +92,8 @@ pub struct Ends {
     pub seconds: [f64; 2],
     /// The same in units of 1/omega.
     pub dimensionless: [f64; 2],
-    /// The best lengths of those that were tried from one limit to the other, m: in seconds and in units of 1/omega.
+    /// The best lengths of those that were tried from one limit to the other, m: in seconds and in
+    /// units of 1/omega.
     pub best: [f64; 2],
 }
 
@@ -94,7 +102,8 @@ pub struct Ends {
 pub struct Decision {
     /// The variables, in their order.
     pub sensitivities: Vec<Sensitivity>,
-    /// The objective of the best design as the others are judged here: by closed forms where it has them.
+    /// The objective of the best design as the others are judged here: by closed forms where it has
+    /// them.
     pub value: f64,
     /// The least objective of all designs that were tried here and keep the constraints.
     pub least: f64,
@@ -108,9 +117,11 @@ pub struct Decision {
     pub points: Vec<Vec<f64>>,
     /// The constraints that have no more than 1 % to spare.
     pub active: Vec<String>,
-    /// What the unit of the rest time does, where a rest time is the objective and the length is searched.
+    /// What the unit of the rest time does, where a rest time is the objective and the length is
+    /// searched.
     pub ends: Option<Ends>,
-    /// The objective with every material, the best design otherwise; nothing for one that does not rest.
+    /// The objective with every material, the best design otherwise; nothing for one that does not
+    /// rest.
     pub materials: Vec<Option<f64>>,
 }
 
@@ -146,7 +157,10 @@ impl Decision {
         let sensitivities: Vec<Sensitivity> = (0..question.variables.len())
             .map(|index| probe.sensitivity(best, index, level))
             .collect();
-        let mut near: Vec<[f64; 2]> = sensitivities.iter().map(|sensitivity| sensitivity.alone).collect();
+        let mut near: Vec<[f64; 2]> = sensitivities
+            .iter()
+            .map(|sensitivity| sensitivity.alone)
+            .collect();
         near.extend(space.bounds().iter().skip(near.len()));
         // What is fixed at one value has no room of its own.
         for (range, [lower, upper]) in near.iter_mut().zip(space.bounds()) {
@@ -159,9 +173,10 @@ impl Decision {
         let (share, points) = probe.share(&near, level);
         let extents = (0..best.len()).map(|index| {
             let values = points.iter().map(|point| point[index]).chain([best[index]]);
-            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| {
-                [least.min(value), most.max(value)]
-            })
+            values.fold(
+                [f64::INFINITY, f64::NEG_INFINITY],
+                |[least, most], value| [least.min(value), most.max(value)],
+            )
         });
         Self {
             extents: extents.collect(),
@@ -190,7 +205,8 @@ impl Decision {
 struct Probe<'a> {
     question: &'a Question,
     space: &'a Space,
-    /// How many times fewer must do: some tenfold for designs without closed forms, a hundredfold with a main mass, which has none.
+    /// How many times fewer must do: some tenfold for designs without closed forms, a hundredfold
+    /// with a main mass, which has none.
     fewer: usize,
     /// The least objective so far of a design that keeps the constraints.
     least: Cell<f64>,
@@ -217,19 +233,25 @@ impl Probe<'_> {
     fn judged(&self, point: &[f64]) -> [Option<f64>; 2] {
         let evaluation = self.question.worth(point, self.least.get(), &mut 0);
         let value = Some(evaluation.value()).filter(|value| value.is_finite());
-        let kept = value.filter(|_| evaluation.is_feasible(self.question.genetic.constraint_tolerance));
+        let kept =
+            value.filter(|_| evaluation.is_feasible(self.question.genetic.constraint_tolerance));
         self.least
             .set(kept.map_or(self.least.get(), |kept| self.least.get().min(kept)));
         [value, kept]
     }
 
-    /// The same point on the surface of the density, where there is one; nothing where that leaves the box.
+    /// The same point on the surface of the density, where there is one; nothing where that leaves
+    /// the box.
     fn on_surface(&self, mut point: Vec<f64>, moved: Option<usize>) -> Option<Vec<f64>> {
         let Some(density) = self.question.density else {
             return Some(point);
         };
         let variables = &self.question.variables;
-        let place = |parameter| variables.iter().position(|variable| variable.parameter == parameter);
+        let place = |parameter| {
+            variables
+                .iter()
+                .position(|variable| variable.parameter == parameter)
+        };
         let (mass, radius) = (place(Parameter::Mass), place(Parameter::Radius));
         if moved.is_some() && moved != mass && moved != radius {
             return Some(point);
@@ -251,7 +273,8 @@ impl Probe<'_> {
         self.on_surface(point, Some(index))
     }
 
-    /// Values from the best one to a limit, closer together near the smaller where the range has decades.
+    /// Values from the best one to a limit, closer together near the smaller where the range has
+    /// decades.
     fn way(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + use<> {
         let decades = (to / from).abs().max((from / to).abs()) > 10.0;
         let steps = if self.fewer > 1 { STEPS / 4 } else { STEPS };
@@ -271,14 +294,20 @@ impl Probe<'_> {
         let limits = [variable.lower, variable.upper];
         let good = |value: f64| {
             let point = self.moved(best, index, value)?;
-            self.feasible(&point).filter(|objective| *objective <= level)
+            self.feasible(&point)
+                .filter(|objective| *objective <= level)
         };
         let reach = |limit: f64| {
             let mut last = value;
             for next in self.way(value, limit) {
                 if good(next).is_none() {
                     let halvings = if self.fewer > 1 { 12 } else { 30 };
-                    let [inside, _] = bisect(|value| good(value).is_some(), last, next, Until::Halvings(halvings));
+                    let [inside, _] = bisect(
+                        |value| good(value).is_some(),
+                        last,
+                        next,
+                        Until::Halvings(halvings),
+                    );
                     return inside;
                 }
                 last = next;
@@ -311,9 +340,10 @@ impl Probe<'_> {
         let is_forbidden = |end: usize| {
             let beyond = alone[end] + 1e-3 * (limits[end] - alone[end]);
             alone[end] != limits[end]
-                && self
-                    .moved(best, index, beyond)
-                    .is_none_or(|point| self.value(&point).is_some_and(|objective| objective <= level))
+                && self.moved(best, index, beyond).is_none_or(|point| {
+                    self.value(&point)
+                        .is_some_and(|objective| objective <= level)
+                })
         };
         let role = match range {
             Some([least, greatest]) if greatest <= least * (1.0 + WITHIN) => Role::Flat,
@@ -380,13 +410,17 @@ impl Probe<'_> {
                 let Some(point) = self.on_surface(space.draw(&mut generator), None) else {
                     continue;
                 };
-                if self.feasible(&point).is_some_and(|objective| objective <= level) {
+                if self
+                    .feasible(&point)
+                    .is_some_and(|objective| objective <= level)
+                {
                     points.push(point);
                 }
             }
             shares[turn] = (points.len() - before) as f64 / drawn[turn] as f64;
         }
-        let part = |(near, whole): (&[f64; 2], &[f64; 2])| (near[1] - near[0]) / (whole[1] - whole[0]);
+        let part =
+            |(near, whole): (&[f64; 2], &[f64; 2])| (near[1] - near[0]) / (whole[1] - whole[0]);
         let volume: f64 = near.iter().zip(whole).map(part).product();
         // Few of the whole box say little.
         match shares[0] * drawn[0] as f64 >= 20.0 {
@@ -401,7 +435,11 @@ impl Probe<'_> {
         let mut active: Vec<String> = Vec::new();
         let limits = self.question.limits.len();
         for (index, excess) in evaluation.inequalities.iter().enumerate() {
-            let word = if index < limits { words.get(index) } else { words.last() };
+            let word = if index < limits {
+                words.get(index)
+            } else {
+                words.last()
+            };
             if *excess > -WITHIN {
                 active.extend(word.cloned());
             }
@@ -438,9 +476,13 @@ impl Probe<'_> {
         let [(short, _), (long, _)] = [both(lengths[0])?, both(lengths[1])?];
         let mut least = [f64::INFINITY; 2];
         let mut best_lengths = [best[index]; 2];
-        let tried = lengths.into_iter().flat_map(|limit| self.way(best[index], limit));
+        let tried = lengths
+            .into_iter()
+            .flat_map(|limit| self.way(best[index], limit));
         for length in lengths.into_iter().chain([best[index]]).chain(tried) {
-            let Some((times, true)) = both(length) else { continue };
+            let Some((times, true)) = both(length) else {
+                continue;
+            };
             for unit in 0..2 {
                 if times[unit] < least[unit] * (1.0 - SAME) {
                     (least[unit], best_lengths[unit]) = (times[unit], length);

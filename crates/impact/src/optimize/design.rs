@@ -1,14 +1,15 @@
 //! One design: its motion until it rests, and the numbers that a search asks for.
 //!
-//! The motion is the chain of closed forms, a few microseconds; where it has none, as for a heavily damped swing, it is integrated. A pendulum
-//! that a main mass carries is followed together with it, always by integration.
+//! The motion is the chain of closed forms, a few microseconds; where it has none, as for a heavily
+//! damped swing, it is integrated. A pendulum that a main mass carries is followed together with
+//! it, always by integration.
 
 use super::question::Question;
 use crate::impact::contact::hunt_crossley::{peak_force, restitution};
 use crate::impact::primary::{MainMass, PrimaryCase, PrimarySettings, simulate_primary};
 use crate::impact::{
-    Case, Contact, Course, Integrator, Model, NoRest, Parameter, Settings, Simulation, SimulationError, Start, Units,
-    course, hertz, simulate,
+    Case, Contact, Course, Integrator, Model, NoRest, Parameter, Settings, Simulation,
+    SimulationError, Start, Units, course, hertz, simulate,
 };
 
 /// How a design is judged.
@@ -27,32 +28,37 @@ pub struct HardestContact {
     pub force: f64,
     /// The pressure of Hertz at the greatest depth, Pa.
     pub pressure: f64,
-    /// The coefficient of restitution of the contact with the greatest force; `None` where it did not begin with a touch or did not end.
+    /// The coefficient of restitution of the contact with the greatest force; `None` where it did
+    /// not begin with a touch or did not end.
     pub restitution: Option<f64>,
 }
 
 impl HardestContact {
-    /// The greatest of these contacts: each its force in units of m g, its depth in rad, and its restitution. `None` where there is none.
+    /// The greatest of these contacts: each its force in units of m g, its depth in rad, and its
+    /// restitution. `None` where there is none.
     fn from_contacts(
         model: &Model,
         units: &Units,
         contacts: impl Iterator<Item = (f64, f64, Option<f64>)>,
     ) -> Option<Self> {
-        contacts.fold(None, |hardest: Option<Self>, (force, depth, restitution)| {
-            let elastic = units.force() * hertz::force(model.gamma, depth);
-            let own = Self {
-                force: units.force() * force,
-                pressure: units.pressure(elastic, units.length * depth).unwrap_or(0.0),
-                restitution,
-            };
-            Some(match hardest {
-                None => own,
-                Some(other) => Self {
-                    pressure: own.pressure.max(other.pressure),
-                    ..if own.force > other.force { own } else { other }
-                },
-            })
-        })
+        contacts.fold(
+            None,
+            |hardest: Option<Self>, (force, depth, restitution)| {
+                let elastic = units.force() * hertz::force(model.gamma, depth);
+                let own = Self {
+                    force: units.force() * force,
+                    pressure: units.pressure(elastic, units.length * depth).unwrap_or(0.0),
+                    restitution,
+                };
+                Some(match hardest {
+                    None => own,
+                    Some(other) => Self {
+                        pressure: own.pressure.max(other.pressure),
+                        ..if own.force > other.force { own } else { other }
+                    },
+                })
+            },
+        )
     }
 }
 
@@ -90,7 +96,8 @@ impl Question {
             match self.variables.get(index) {
                 Some(variable) => case.set(variable.parameter, *value),
                 None => {
-                    let number = (value.max(0.0).floor() as usize).min(self.materials.len().saturating_sub(1));
+                    let number = (value.max(0.0).floor() as usize)
+                        .min(self.materials.len().saturating_sub(1));
                     material = Some(number);
                 }
             }
@@ -105,9 +112,14 @@ impl Question {
         (case, material)
     }
 
-    /// Whether a design may have the damping of the contact that is held fixed: not where every material has its own.
+    /// Whether a design may have the damping of the contact that is held fixed: not where every
+    /// material has its own.
     pub fn holds_contact_damping(&self) -> bool {
-        self.materials.is_empty() || self.materials.iter().any(|material| material.damping.is_none())
+        self.materials.is_empty()
+            || self
+                .materials
+                .iter()
+                .any(|material| material.damping.is_none())
     }
 
     /// Follows a design until it rests; `contact` asks for the hardest contact too.
@@ -218,7 +230,9 @@ impl DesignMotion<'_> {
                 };
                 let motion = simulate(&self.model, self.start, Integrator::Taylor, &settings)?;
                 let course = Course::from(&motion);
-                let hardest = self.contact.then(|| self.hardest_of_motion(&motion, &course));
+                let hardest = self
+                    .contact
+                    .then(|| self.hardest_of_motion(&motion, &course));
                 (course, hardest)
             }
         };
@@ -235,7 +249,11 @@ impl DesignMotion<'_> {
     fn in_closed_form(&self, contact: &Contact) -> Option<(f64, f64, Option<f64>)> {
         let ratio = self.model.mu / self.model.gamma;
         let force = peak_force(1.5, self.model.gamma, ratio, contact.speed_in)?;
-        Some((force, contact.penetration, restitution(ratio * contact.speed_in).ok()))
+        Some((
+            force,
+            contact.penetration,
+            restitution(ratio * contact.speed_in).ok(),
+        ))
     }
 
     /// The contact that is touched fastest, in closed form.
@@ -246,23 +264,24 @@ impl DesignMotion<'_> {
         HardestContact::from_contacts(&self.model, &self.units, contacts)
     }
 
-    /// The hardest contact of a motion that was integrated. Of one too short for the clock the force is that of the closed form: the swing's own
-    /// forces have no time to act.
+    /// The hardest contact of a motion that was integrated. Of one too short for the clock the
+    /// force is that of the closed form: the swing's own forces have no time to act.
     fn hardest_of_motion(&self, motion: &Simulation, course: &Course) -> Option<HardestContact> {
-        let contacts = course
-            .impacts
-            .iter()
-            .filter_map(|contact| match motion.peak_force(contact) {
-                Some(force) => Some((force, contact.penetration, contact.restitution)),
-                None => self
-                    .in_closed_form(contact)
-                    .map(|(force, depth, _)| (force, depth, contact.restitution)),
-            });
+        let contacts =
+            course
+                .impacts
+                .iter()
+                .filter_map(|contact| match motion.peak_force(contact) {
+                    Some(force) => Some((force, contact.penetration, contact.restitution)),
+                    None => self
+                        .in_closed_form(contact)
+                        .map(|(force, depth, _)| (force, depth, contact.restitution)),
+                });
         HardestContact::from_contacts(&self.model, &self.units, contacts)
     }
 
-    /// The pendulum on the main mass that carries it: always by integration, for the two have no chain. It ends when the main mass rests, unless the
-    /// rest of the pendulum is asked for too.
+    /// The pendulum on the main mass that carries it: always by integration, for the two have no
+    /// chain. It ends when the main mass rests, unless the rest of the pendulum is asked for too.
     fn carried(&self, main_mass: &MainMass) -> Result<Followed, String> {
         let [displacement, speed] = main_mass.start(&self.units);
         let case = PrimaryCase {
@@ -274,14 +293,16 @@ impl DesignMotion<'_> {
         let settings = PrimarySettings {
             duration: settings.duration,
             phase_limit: settings.maximum_steps,
-            stop_at_rest: !(self.question.follows_pendulum() || self.route == Route::Integration && self.contact),
+            stop_at_rest: !(self.question.follows_pendulum()
+                || self.route == Route::Integration && self.contact),
             interrupt: settings.interrupt,
             ..PrimarySettings::default()
         };
         let motion = simulate_primary(case, &settings).map_err(|error| error.to_string())?;
         let rest = motion.pendulum_rest_time();
         let impacts = motion.impacts.iter();
-        let impacts = impacts.filter(|impact| rest.is_err() || rest.is_ok_and(|rest| impact.entry < rest));
+        let impacts =
+            impacts.filter(|impact| rest.is_err() || rest.is_ok_and(|rest| impact.entry < rest));
         let hardest = self.contact.then(|| {
             let contacts = impacts.clone().map(|impact| {
                 let restitution = impact.speed_out.map(|out| out / impact.speed_in);

@@ -1,14 +1,17 @@
 //! The best damper: a genetic search for the design that rests soonest, and what decides it.
 //!
-//! In: a [`Question`]: what may vary between which limits, what is held fixed, what is to be small, how it is searched. Out: a [`Study`]: the
-//! best design judged again by integration, how far many runs agree, what the same number of evaluations finds otherwise, the
-//! default design under the same assumptions, and why the best one is best: a [`Decision`]. With several objectives at once it is the
-//! Pareto front.
+//! In: a [`Question`]: what may vary between which limits, what is held fixed, what is to be small,
+//! how it is searched. Out: a [`Study`]: the best design judged again by integration, how far many
+//! runs agree, what the same number of evaluations finds otherwise, the default design under the
+//! same assumptions, and why the best one is best: a [`Decision`]. With several objectives at once
+//! it is the Pareto front.
 //!
 //! - `objective`: what may be small or limited, one row each.
 //! - `question`: the box, the constraints, the options.
-//! - `design`: one design: its motion by closed forms until it rests, and by integration where there are none.
-//! - `decision`: what decides the best design: sensitivities, what is as good, corner, flat direction or trade.
+//! - `design`: one design: its motion by closed forms until it rests, and by integration where
+//!   there are none.
+//! - `decision`: what decides the best design: sensitivities, what is as good, corner, flat
+//!   direction or trade.
 //! - `study`: all runs, and what stands beside them.
 //!
 //! ```

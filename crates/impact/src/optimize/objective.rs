@@ -22,7 +22,12 @@ pub enum Objective {
 }
 
 /// Name, unit, meaning and value of an objective.
-type Row = (&'static str, &'static str, &'static str, fn(&Design) -> Option<f64>);
+type Row = (
+    &'static str,
+    &'static str,
+    &'static str,
+    fn(&Design) -> Option<f64>,
+);
 
 impl Objective {
     /// Every objective, in the order of the documentation.
@@ -47,9 +52,12 @@ impl Objective {
                 "the rest time in units of 1/omega",
                 |design| design.rest_time.ok(),
             ),
-            Self::PeakForce => ("peak_force", "N", "the greatest force of a contact", |design| {
-                Some(design.hardest.map_or(0.0, |contact| contact.force))
-            }),
+            Self::PeakForce => (
+                "peak_force",
+                "N",
+                "the greatest force of a contact",
+                |design| Some(design.hardest.map_or(0.0, |contact| contact.force)),
+            ),
             Self::PeakPressure => (
                 "peak_pressure",
                 "Pa",
@@ -62,9 +70,12 @@ impl Objective {
             Self::Impacts => ("impacts", "", "the contacts until it rests", |design| {
                 Some(design.impacts as f64)
             }),
-            Self::PrimaryRestTime => ("primary_rest_time", "s", "the rest time of the main mass", |design| {
-                design.primary_rest_time?.ok()
-            }),
+            Self::PrimaryRestTime => (
+                "primary_rest_time",
+                "s",
+                "the rest time of the main mass",
+                |design| design.primary_rest_time?.ok(),
+            ),
         }
     }
 
@@ -105,6 +116,8 @@ impl Objective {
 
     /// The objective of this name.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|objective| objective.name() == name)
+        Self::ALL
+            .into_iter()
+            .find(|objective| objective.name() == name)
     }
 }

@@ -10,10 +10,12 @@ use crate::decimal::{decimal, significant};
 use crate::genetic::{Evaluation, Options, OptionsError, Space, SpaceError};
 use crate::impact::primary::MainMass;
 use crate::impact::{
-    Case, ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, FIRST_YIELD, Material, Parameter, Settings, default_lambda,
+    Case, ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, FIRST_YIELD, Material, Parameter,
+    Settings, default_lambda,
 };
 
-/// The box of a search that is given none: each parameter with its lower and upper limit, in SI units.
+/// The box of a search that is given none: each parameter with its lower and upper limit, in SI
+/// units.
 pub const DEFAULT_BOX: [(Parameter, f64, f64); 4] = [
     (Parameter::Mass, 0.010, 0.100),
     (Parameter::Radius, 0.001, 0.020),
@@ -48,7 +50,8 @@ pub struct Question {
     pub case: Case,
     /// What is searched.
     pub variables: Vec<Variable>,
-    /// The materials of the barrier that are tried, in place of its modulus; none where that is searched or fixed.
+    /// The materials of the barrier that are tried, in place of its modulus; none where that is
+    /// searched or fixed.
     pub materials: Vec<Material>,
     /// What is to be small; several at once make a front.
     pub objectives: Vec<Objective>,
@@ -77,7 +80,8 @@ pub struct Question {
 }
 
 impl Default for Question {
-    /// The [`DEFAULT_BOX`], searched a hundred times for the least rest time in seconds, with the default dissipation.
+    /// The [`DEFAULT_BOX`], searched a hundred times for the least rest time in seconds, with the
+    /// default dissipation.
     fn default() -> Self {
         let variable = |(parameter, lower, upper)| Variable {
             parameter,
@@ -139,7 +143,9 @@ pub enum OptimizeError {
     #[error("{0}")]
     Motion(String),
     /// No design that rests.
-    #[error("no design in this box comes to rest in the time allowed, {duration} units of 1/omega: {reason}")]
+    #[error(
+        "no design in this box comes to rest in the time allowed, {duration} units of 1/omega: {reason}"
+    )]
     NoRest {
         /// How long motions were followed.
         duration: f64,
@@ -222,7 +228,10 @@ impl Question {
                 )));
             }
         }
-        if let Some(density) = self.density.filter(|density| !(*density > 0.0 && density.is_finite())) {
+        if let Some(density) = self
+            .density
+            .filter(|density| !(*density > 0.0 && density.is_finite()))
+        {
             return Err(OptimizeError::Limits(format!(
                 "density must be a positive number, not {density}"
             )));
@@ -286,8 +295,15 @@ impl Question {
         let words = self.constraints();
         let mut broken = Vec::new();
         for (index, limit) in self.limits.iter().enumerate() {
-            if evaluation.inequalities.get(index).is_some_and(|excess| *excess > 0.0) {
-                let value = limit.objective.value(design).map_or("no value".to_owned(), decimal);
+            if evaluation
+                .inequalities
+                .get(index)
+                .is_some_and(|excess| *excess > 0.0)
+            {
+                let value = limit
+                    .objective
+                    .value(design)
+                    .map_or("no value".to_owned(), decimal);
                 broken.push(format!("{} ({value})", words[index]));
             }
         }
@@ -295,13 +311,19 @@ impl Question {
             && off.abs() > self.genetic.constraint_tolerance
         {
             let words = words.get(self.limits.len()).cloned().unwrap_or_default();
-            broken.push(format!("{words} (m is {} times that)", significant(1.0 + off, 4)));
+            broken.push(format!(
+                "{words} (m is {} times that)",
+                significant(1.0 + off, 4)
+            ));
         }
         if let Some(excess) = evaluation.inequalities.get(self.limits.len())
             && *excess > 0.0
         {
             let words = words.last().cloned().unwrap_or_default();
-            broken.push(format!("{words} ({} times that)", significant(1.0 + excess, 4)));
+            broken.push(format!(
+                "{words} ({} times that)",
+                significant(1.0 + excess, 4)
+            ));
         }
         broken
     }
@@ -312,7 +334,10 @@ impl Question {
             Some(number) => self.materials.get(number)?.yield_limit,
             None => self.barrier_yield,
         };
-        [self.sphere_yield, barrier].into_iter().flatten().reduce(f64::min)
+        [self.sphere_yield, barrier]
+            .into_iter()
+            .flatten()
+            .reduce(f64::min)
     }
 
     /// What a design is worth.

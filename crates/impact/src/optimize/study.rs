@@ -1,7 +1,8 @@
 //! Many runs of one search, on all cores, and what stands beside them.
 //!
-//! Run number i has the i-th stream of random numbers of the seed, so what it finds depends on nothing but the question: not on threads,
-//! not on whether it was done before and read from a record.
+//! Run number i has the i-th stream of random numbers of the seed, so what it finds depends on
+//! nothing but the question: not on threads, not on whether it was done before and read from a
+//! record.
 
 use super::decision::Decision;
 use super::design::{Design, Route};
@@ -9,8 +10,8 @@ use super::objective::Objective;
 use super::question::{LARGEST_EXCESS, OptimizeError, Question};
 use crate::decimal::significant;
 use crate::genetic::{
-    Evaluation, Individual, Options, Penalty, Run, Space, Stop, crowding, differential_evolution, generator,
-    non_dominated, random_search, search, search_front,
+    Evaluation, Individual, Options, Penalty, Run, Space, Stop, crowding, differential_evolution,
+    generator, non_dominated, random_search, search, search_front,
 };
 use crate::impact::hertz;
 use crate::parallel::each;
@@ -20,7 +21,8 @@ use crate::parallel::each;
 pub struct Found {
     /// The point of the box.
     pub point: Vec<f64>,
-    /// The objectives there as the search has them: by closed forms, by integration where there are none.
+    /// The objectives there as the search has them: by closed forms, by integration where there are
+    /// none.
     pub values: Vec<f64>,
 }
 
@@ -29,16 +31,18 @@ pub struct Found {
 pub struct SearchRun {
     /// Its number, from 0: the stream of its random numbers.
     pub number: usize,
-    /// What it found: the best design, or with several objectives its front; nothing where no design rests and keeps the constraints.
+    /// What it found: the best design, or with several objectives its front; nothing where no
+    /// design rests and keeps the constraints.
     pub found: Vec<Found>,
-    /// The best value after the random population and after every generation, infinite while there is none; with several objectives the size
-    /// of the front.
+    /// The best value after the random population and after every generation, infinite while there
+    /// is none; with several objectives the size of the front.
     pub curve: Vec<f64>,
     /// Generations after the random population.
     pub generations: usize,
     /// Designs that were followed.
     pub evaluations: usize,
-    /// The number of designs that were integrated: they have no closed form, or would be the best if they keep the constraints.
+    /// The number of designs that were integrated: they have no closed form, or would be the best
+    /// if they keep the constraints.
     pub integrated: usize,
     /// Why it ended.
     pub stop: Stop,
@@ -117,7 +121,12 @@ pub struct Rival {
 impl Rival {
     /// How the values are spread over the runs that found one.
     pub fn spread(&self) -> Option<Spread> {
-        let found: Vec<f64> = self.values.iter().copied().filter(|value| value.is_finite()).collect();
+        let found: Vec<f64> = self
+            .values
+            .iter()
+            .copied()
+            .filter(|value| value.is_finite())
+            .collect();
         Spread::of(&found)
     }
 }
@@ -133,7 +142,8 @@ pub struct Finalist {
     pub design: Design,
     /// Its objectives by integration; infinite where it has none.
     pub values: Vec<f64>,
-    /// Whether it rests and keeps the constraints by integration; no front has a design that does not.
+    /// Whether it rests and keeps the constraints by integration; no front has a design that does
+    /// not.
     pub feasible: bool,
 }
 
@@ -147,7 +157,8 @@ pub struct Study {
     pub runs: Vec<SearchRun>,
     /// Whether all runs and all that stands beside them were done.
     pub complete: bool,
-    /// The best designs of the runs judged again, the best first; with several objectives the front.
+    /// The best designs of the runs judged again, the best first; with several objectives the
+    /// front.
     pub finalists: Vec<Finalist>,
     /// The default design under the same assumptions, by integration, in the box or not.
     pub default_design: Option<Design>,
@@ -170,13 +181,16 @@ impl Question {
     /// The most generations of the whole study, those of the rivals among them.
     pub fn most_work(&self) -> usize {
         let rivals = if self.objectives.len() == 1 { 2 } else { 0 };
-        self.runs.saturating_mul((1 + rivals) * self.genetic.generations)
+        self.runs
+            .saturating_mul((1 + rivals) * self.genetic.generations)
     }
 
-    /// The value of a design in a search, in which the best one so far has this value; what makes no motion is worth nothing.
+    /// The value of a design in a search, in which the best one so far has this value; what makes
+    /// no motion is worth nothing.
     ///
-    /// Closed forms are too coarse to decide whether a constraint is kept: a design as near to one as they may be off, which by them would be the
-    /// best or on a front, is integrated. It keeps its value by closed forms where it keeps the constraints, so that values can be compared.
+    /// Closed forms are too coarse to decide whether a constraint is kept: a design as near to one
+    /// as they may be off, which by them would be the best or on a front, is integrated. It keeps
+    /// its value by closed forms where it keeps the constraints, so that values can be compared.
     pub(super) fn worth(&self, point: &[f64], best: f64, integrated: &mut usize) -> Evaluation {
         let follow = |route| match self.follow(point, route, self.needs_contact()) {
             Ok(design) => (self.evaluation(&design), design.integrated),
@@ -184,7 +198,10 @@ impl Question {
                 let none = Evaluation {
                     objectives: vec![f64::INFINITY; self.objectives.len()],
                     equalities: self.density.map(|_| LARGEST_EXCESS).into_iter().collect(),
-                    inequalities: vec![LARGEST_EXCESS; self.limits.len() + usize::from(self.elastic)],
+                    inequalities: vec![
+                        LARGEST_EXCESS;
+                        self.limits.len() + usize::from(self.elastic)
+                    ],
                 };
                 (none, false)
             }
@@ -197,7 +214,8 @@ impl Question {
             .fold(f64::NEG_INFINITY, f64::max);
         let tolerance = self.genetic.constraint_tolerance;
         let counts = self.objectives.len() > 1 || evaluation.value() < best;
-        let decides = counts && closest > -MOST_OFF && !is_integrated && evaluation.is_feasible(tolerance);
+        let decides =
+            counts && closest > -MOST_OFF && !is_integrated && evaluation.is_feasible(tolerance);
         *integrated += usize::from(is_integrated || decides);
         if decides {
             let judged = follow(Route::Integration).0;
@@ -208,7 +226,8 @@ impl Question {
         evaluation
     }
 
-    /// The function that a search makes small; it keeps in mind the best value so far, and counts the designs that were integrated.
+    /// The function that a search makes small; it keeps in mind the best value so far, and counts
+    /// the designs that were integrated.
     fn evaluate<'a>(&'a self, integrated: &'a mut usize) -> impl FnMut(&[f64]) -> Evaluation + 'a {
         let mut best = f64::INFINITY;
         move |point| {
@@ -255,8 +274,13 @@ impl Question {
 /// Searches: all runs but those that are known already, on all threads of the current pool.
 ///
 /// # Errors
-/// [`OptimizeError`]: options that make no search, a box in which nothing rests or keeps the constraints.
-pub fn optimize(question: Question, known: Vec<SearchRun>, watch: &Watch) -> Result<Study, OptimizeError> {
+/// [`OptimizeError`]: options that make no search, a box in which nothing rests or keeps the
+/// constraints.
+pub fn optimize(
+    question: Question,
+    known: Vec<SearchRun>,
+    watch: &Watch,
+) -> Result<Study, OptimizeError> {
     let space = question.check()?;
     let missing: Vec<usize> = (0..question.runs)
         .filter(|number| known.iter().all(|run| run.number != *number))
@@ -275,13 +299,17 @@ pub fn optimize(question: Question, known: Vec<SearchRun>, watch: &Watch) -> Res
         Some(run)
     };
     let new = each(&missing, one);
-    let mut runs: Vec<SearchRun> = known.into_iter().filter(|run| run.number < question.runs).collect();
+    let mut runs: Vec<SearchRun> = known
+        .into_iter()
+        .filter(|run| run.number < question.runs)
+        .collect();
     runs.extend(new.into_iter().flatten());
     runs.sort_by_key(|run| run.number);
     if runs.is_empty() {
         return Err(OptimizeError::Stopped);
     }
-    let complete = runs.len() == question.runs && runs.iter().all(|run| run.stop != Stop::Interrupted);
+    let complete =
+        runs.len() == question.runs && runs.iter().all(|run| run.stop != Stop::Interrupted);
     if runs.iter().all(|run| run.found.is_empty()) {
         return Err(nothing(&question, &space, watch, complete));
     }
@@ -366,7 +394,8 @@ fn nothing(question: &Question, space: &Space, watch: &Watch, complete: bool) ->
     if question.constraints().is_empty() {
         return OptimizeError::NoRest {
             duration: question.settings.duration,
-            reason: "some do just before its end by closed forms, and none by integration".to_owned(),
+            reason: "some do just before its end by closed forms, and none by integration"
+                .to_owned(),
         };
     }
     // Constraints alone: how far they are broken is what is to be small.
@@ -405,12 +434,15 @@ fn nothing(question: &Question, space: &Space, watch: &Watch, complete: bool) ->
         nearest: match (design, broken) {
             (Some(design), Some(broken)) if broken.is_empty() => {
                 let variables = question.variables.iter().zip(&design.point);
-                let values = variables
-                    .map(|(variable, value)| format!("{} = {}", variable.parameter.name(), significant(*value, 4)));
+                let values = variables.map(|(variable, value)| {
+                    format!("{} = {}", variable.parameter.name(), significant(*value, 4))
+                });
                 let values: Vec<String> = values.collect();
                 format!("there are some, such as {}", values.join(", "))
             }
-            (Some(_), Some(broken)) => format!("the nearest that was found breaks {}", broken.join("; ")),
+            (Some(_), Some(broken)) => {
+                format!("the nearest that was found breaks {}", broken.join("; "))
+            }
             _ => "none comes near".to_owned(),
         },
         exists,
@@ -429,7 +461,9 @@ fn finalists(question: &Question, runs: &[SearchRun]) -> Vec<Finalist> {
         found = front(&found, question.genetic.population);
     }
     let judge = |&(run, found): &(usize, &Found)| {
-        let design = question.follow(&found.point, Route::Integration, true).ok()?;
+        let design = question
+            .follow(&found.point, Route::Integration, true)
+            .ok()?;
         let evaluation = question.evaluation(&design);
         let by_chain = match question.main_mass {
             None => question
@@ -469,7 +503,8 @@ fn finalists(question: &Question, runs: &[SearchRun]) -> Vec<Finalist> {
     finalists
 }
 
-/// The first designs that differ from those before by more than a part of the limits that nobody builds to.
+/// The first designs that differ from those before by more than a part of the limits that nobody
+/// builds to.
 fn distinct<'a>(question: &Question, found: &[(usize, &'a Found)]) -> Vec<(usize, &'a Found)> {
     const SAME: f64 = 1e-6;
     let same = |one: &Found, other: &Found| {
@@ -509,7 +544,10 @@ fn front<'a>(found: &[(usize, &'a Found)], most: usize) -> Vec<(usize, &'a Found
         // A tenth of what is too many at a time: neighbours that go together leave no gap.
         let mut order: Vec<usize> = (0..left.len()).collect();
         order.sort_by(|one, other| lonely[*one].total_cmp(&lonely[*other]));
-        let mut gone: Vec<usize> = order.into_iter().take((left.len() - most).div_ceil(10)).collect();
+        let mut gone: Vec<usize> = order
+            .into_iter()
+            .take((left.len() - most).div_ceil(10))
+            .collect();
         gone.sort_unstable();
         for index in gone.into_iter().rev() {
             left.remove(index);
@@ -541,7 +579,11 @@ fn rivals(question: &Question, space: &Space, runs: &[SearchRun], watch: &Watch)
             let values: Vec<f64> = runs.iter().map(|run| run.curve[index]).collect();
             Spread::of(&values).map_or(f64::INFINITY, |spread| spread.median)
         };
-        let value = |run: &Run| run.best.as_ref().map_or(f64::INFINITY, |best| best.evaluation.value());
+        let value = |run: &Run| {
+            run.best
+                .as_ref()
+                .map_or(f64::INFINITY, |best| best.evaluation.value())
+        };
         Some(Rival {
             name,
             evaluations: runs.first().map_or(0, |run| run.evaluations),
@@ -582,7 +624,8 @@ fn rivals(question: &Question, space: &Space, runs: &[SearchRun], watch: &Watch)
 }
 
 impl Study {
-    /// The best design that keeps the constraints, judged by integration; with several objectives the one best in the first. There always is one.
+    /// The best design that keeps the constraints, judged by integration; with several objectives
+    /// the one best in the first. There always is one.
     pub fn best(&self) -> Option<&Finalist> {
         self.finalists.first()
     }
@@ -598,15 +641,22 @@ impl Study {
         Spread::of(&self.values())
     }
 
-    /// All designs that the genetic algorithm followed, and those that were integrated for want of a closed form.
+    /// All designs that the genetic algorithm followed, and those that were integrated for want of
+    /// a closed form.
     pub fn evaluations(&self) -> (usize, usize) {
         let sum = |of: fn(&SearchRun) -> usize| self.runs.iter().map(of).sum();
         (sum(|run| run.evaluations), sum(|run| run.integrated))
     }
 
-    /// The median over the runs of the best value after each generation; runs that have ended keep theirs.
+    /// The median over the runs of the best value after each generation; runs that have ended keep
+    /// theirs.
     pub fn median_curve(&self) -> Vec<f64> {
-        let length = self.runs.iter().map(|run| run.curve.len()).max().unwrap_or(0);
+        let length = self
+            .runs
+            .iter()
+            .map(|run| run.curve.len())
+            .max()
+            .unwrap_or(0);
         let at = |index: usize| {
             let last = |run: &SearchRun| run.curve.get(index).or(run.curve.last()).copied();
             let values: Vec<f64> = self.runs.iter().filter_map(last).collect();
@@ -619,12 +669,18 @@ impl Study {
     pub fn settled(&self, part: f64) -> Option<usize> {
         let curve = self.median_curve();
         let last = *curve.last()?;
-        curve.iter().position(|value| value - last <= part * last.abs())
+        curve
+            .iter()
+            .position(|value| value - last <= part * last.abs())
     }
 
     /// The first objective.
     pub fn objective(&self) -> Objective {
-        self.question.objectives.first().copied().unwrap_or(Objective::RestTime)
+        self.question
+            .objectives
+            .first()
+            .copied()
+            .unwrap_or(Objective::RestTime)
     }
 }
 
@@ -643,7 +699,10 @@ mod tests {
             spread.worst,
         ];
         assert_eq!(numbers, [1.0, 2.0, 3.0, 4.0, 8.0]);
-        assert_eq!(Spread::of(&[1.0, 2.0]).map(|spread| spread.lower_quartile), Some(1.25));
+        assert_eq!(
+            Spread::of(&[1.0, 2.0]).map(|spread| spread.lower_quartile),
+            Some(1.25)
+        );
         assert_eq!(Spread::of(&[]), None);
     }
 }

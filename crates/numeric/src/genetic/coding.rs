@@ -1,7 +1,8 @@
 //! How a point is written as genes: as its numbers, or each number as a string of bits.
 //!
-//! A gene of a string of bits is 0 or 1, the highest bit of a number first: with n bits it takes 2^n evenly spaced values from the lower to
-//! the upper bound, so every string is a point of the box.
+//! A gene of a string of bits is 0 or 1, the highest bit of a number first: with n bits it takes
+//! 2^n evenly spaced values from the lower to the upper bound, so every string is a point of the
+//! box.
 
 use rand::{Rng, RngExt};
 

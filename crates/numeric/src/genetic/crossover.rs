@@ -21,8 +21,8 @@ impl Default for Crossover {
     }
 }
 
-/// The child worse + R (better - worse) with R the ratio or, where that leaves the box, the largest R below it that does not: no chance
-/// plays a part. Wright's heuristic crossover, kept feasible.
+/// The child worse + R (better - worse) with R the ratio or, where that leaves the box, the largest
+/// R below it that does not: no chance plays a part. Wright's heuristic crossover, kept feasible.
 ///
 /// With both parents in the box and a ratio of 1 or more, R is at least 1.
 ///
@@ -39,7 +39,11 @@ pub fn heuristic(worse: &[f64], better: &[f64], ratio: f64, space: &Space) -> Ve
     let mut reach = ratio;
     for ((from, to), [lower, upper]) in worse.iter().zip(better).zip(space.bounds()) {
         let way = to - from;
-        let room = if way > 0.0 { upper - from } else { lower - from };
+        let room = if way > 0.0 {
+            upper - from
+        } else {
+            lower - from
+        };
         if way != 0.0 {
             reach = reach.min(room / way);
         }
@@ -48,23 +52,39 @@ pub fn heuristic(worse: &[f64], better: &[f64], ratio: f64, space: &Space) -> Ve
         // The last digit may lie outside.
         (from + reach * (to - from)).clamp(*lower, *upper)
     };
-    worse.iter().zip(better).zip(space.bounds()).map(place).collect()
+    worse
+        .iter()
+        .zip(better)
+        .zip(space.bounds())
+        .map(place)
+        .collect()
 }
 
 /// Every gene from one parent or the other, by the toss of a coin.
 pub fn scattered(one: &[f64], other: &[f64], generator: &mut impl Rng) -> Vec<f64> {
-    let gene = |(one, other): (&f64, &f64)| if generator.random::<bool>() { *one } else { *other };
+    let gene = |(one, other): (&f64, &f64)| {
+        if generator.random::<bool>() {
+            *one
+        } else {
+            *other
+        }
+    };
     one.iter().zip(other).map(gene).collect()
 }
 
-/// The genes up to a random place from one parent, those after it from the other; some from both where there are two or more.
+/// The genes up to a random place from one parent, those after it from the other; some from both
+/// where there are two or more.
 pub fn one_point(one: &[f64], other: &[f64], generator: &mut impl Rng) -> Vec<f64> {
     let shared = one.len().min(other.len());
     if shared < 2 {
         return one.to_vec();
     }
     let place = generator.random_range(1..shared);
-    one[..place].iter().chain(&other[place..]).copied().collect()
+    one[..place]
+        .iter()
+        .chain(&other[place..])
+        .copied()
+        .collect()
 }
 
 #[cfg(test)]

@@ -1,26 +1,31 @@
-//! Search by a genetic algorithm: a population of points of a box, better ones more often parents. It knows numbers and functions of
-//! them, nothing of what they mean.
+//! Search by a genetic algorithm: a population of points of a box, better ones more often parents.
+//! It knows numbers and functions of them, nothing of what they mean.
 //!
-//! In: a [`Space`], a function that gives every point an [`Evaluation`], [`Options`], a generator of random numbers. Out: a [`Run`]: the
-//! best point that keeps the constraints, and how the best value came down from generation to generation. One generation is
+//! In: a [`Space`], a function that gives every point an [`Evaluation`], [`Options`], a generator
+//! of random numbers. Out: a [`Run`]: the best point that keeps the constraints, and how the best
+//! value came down from generation to generation. One generation is
 //!
 //! ```text
 //! score -> scale by rank -> select parents -> elite + children by crossover + children by mutation -> score
 //! ```
 //!
-//! One file for each operator, by the names that users of MATLAB's `ga` know; written from descriptions of what they do, and held to
-//! their properties by tests:
+//! One file for each operator, by the names that users of MATLAB's `ga` know; written from
+//! descriptions of what they do, and held to their properties by tests:
 //!
 //! - `space`: the box.
 //! - `coding`: numbers as they are, or as strings of bits.
 //! - `scaling`: [`rank_scaling`], expectations by rank.
-//! - `selection`: [`stochastic_uniform`] (J. E. Baker, *Proc. 2nd Int. Conf. on Genetic Algorithms*, 1987, 14).
-//! - `crossover`: [`heuristic`] (A. H. Wright, *Foundations of Genetic Algorithms*, 1991, 205), [`scattered`], [`one_point`].
-//! - `mutation`: [`adaptive_feasible`], an algorithm of our own under a known name, and [`bit_flips`].
+//! - `selection`: [`stochastic_uniform`] (J. E. Baker, *Proc. 2nd Int. Conf. on Genetic
+//!   Algorithms*, 1987, 14).
+//! - `crossover`: [`heuristic`] (A. H. Wright, *Foundations of Genetic Algorithms*, 1991, 205),
+//!   [`scattered`], [`one_point`].
+//! - `mutation`: [`adaptive_feasible`], an algorithm of our own under a known name, and
+//!   [`bit_flips`].
 //! - `penalty`: what a point is worth that breaks a constraint.
 //! - `stopping`: when the best value has ceased to change.
 //! - `population`: the generations of one run: [`search`].
-//! - `pareto`, `nsga`: several functions at once (K. Deb et al., *IEEE Trans. Evol. Comput.* 6 (2002) 182): [`search_front`].
+//! - `pareto`, `nsga`: several functions at once (K. Deb et al., *IEEE Trans. Evol. Comput.* 6
+//!   (2002) 182): [`search_front`].
 //! - `rivals`: [`random_search`] and [`differential_evolution`] on the same budget.
 //!
 //! ```
@@ -63,8 +68,9 @@ pub use stopping::{StallTest, Stop, has_stalled};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// The random numbers of one run: stream `stream` of ChaCha8 with this seed, the same on every machine. Streams of one seed have nothing
-/// in common, so runs may follow each other in any order, on any number of threads.
+/// The random numbers of one run: stream `stream` of ChaCha8 with this seed, the same on every
+/// machine. Streams of one seed have nothing in common, so runs may follow each other in any order,
+/// on any number of threads.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;

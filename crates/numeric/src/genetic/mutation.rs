@@ -1,8 +1,9 @@
 //! Mutation: a child of one parent.
 //!
-//! Adaptive feasible mutation is a name without a published algorithm. Ours, in the manner of mesh-adaptive direct search (C. Audet and
-//! J. E. Dennis, *SIAM J. Optim.* 17 (2006) 188), keeps what the name says: directions adapt to the last successful or unsuccessful
-//! generation, and every step stays in the box.
+//! Adaptive feasible mutation is a name without a published algorithm. Ours, in the manner of
+//! mesh-adaptive direct search (C. Audet and J. E. Dennis, *SIAM J. Optim.* 17 (2006) 188), keeps
+//! what the name says: directions adapt to the last successful or unsuccessful generation, and
+//! every step stays in the box.
 //!
 //! ```text
 //! D = 1 for the first two generations; then D <- min(1, 4 D) where the best score has improved, else D <- max(1e-6, D/4)
@@ -12,7 +13,8 @@
 //! if none is, halve D for this child, eight times at most, then keep x
 //! ```
 //!
-//! So a step is of the size sqrt(D) of the box, and the smaller it is, the more directions there are.
+//! So a step is of the size sqrt(D) of the box, and the smaller it is, the more directions there
+//! are.
 
 use rand::seq::SliceRandom;
 use rand::{Rng, RngExt};
@@ -52,7 +54,12 @@ pub fn next_step(step: f64, generation: usize, improved: bool) -> f64 {
 }
 
 /// A child in the box near its parent, by the algorithm of this file, with D = `step`.
-pub fn adaptive_feasible(parent: &[f64], step: f64, space: &Space, generator: &mut impl Rng) -> Vec<f64> {
+pub fn adaptive_feasible(
+    parent: &[f64],
+    step: f64,
+    space: &Space,
+    generator: &mut impl Rng,
+) -> Vec<f64> {
     let mut step = step;
     for _ in 0..=MOST_HALVINGS {
         let mut trials: Vec<(Vec<f64>, f64)> = directions(parent.len(), step, generator)
@@ -131,7 +138,8 @@ mod tests {
             prop_assert!(space.contains(&child));
             let farthest = parent.iter().zip(&child).map(|(one, other)| (one - other).abs() / 5.0).fold(0.0, f64::max);
             prop_assert!(farthest <= step.sqrt() * (1.0 + 1e-9), "{farthest}");
-            // In the middle of the box the first direction fits from a quarter on: one coordinate moves by the whole size.
+            // In the middle of the box the first direction fits from a quarter on: one coordinate
+            // moves by the whole size.
             if quarterings > 0 && parts.iter().all(|part| (part - 0.5).abs() <= 0.5 - step.sqrt()) {
                 prop_assert!(farthest >= step.sqrt() * (1.0 - 1e-6), "{farthest}");
             }
@@ -143,7 +151,8 @@ mod tests {
             let columns = directions(count, step, &mut generator(seed, 0));
             let size = (1.0 / step.sqrt()).round();
             let matrix = nalgebra::DMatrix::from_fn(count, count, |row, column| columns[column][row]);
-            // Triangular but for the order of rows and columns: the determinant is the product of the diagonal.
+            // Triangular but for the order of rows and columns: the determinant is the product of
+            // the diagonal.
             let determinant = matrix.determinant().abs() / size.powi(count as i32);
             prop_assert!((determinant - 1.0).abs() < 1e-6, "{determinant}");
             prop_assert!(columns.iter().flatten().all(|entry| entry.abs() <= size && entry.fract() == 0.0));
@@ -154,7 +163,12 @@ mod tests {
     fn a_parent_in_a_corner_still_has_children() {
         let space = Space::new(vec![[0.0, 1.0]; 4]).unwrap();
         let moved = (0..200).filter(|seed| {
-            let child = adaptive_feasible(&[0.0, 1.0, 0.0, 1.0], 1e-4, &space, &mut generator(*seed, 0));
+            let child = adaptive_feasible(
+                &[0.0, 1.0, 0.0, 1.0],
+                1e-4,
+                &space,
+                &mut generator(*seed, 0),
+            );
             child != [0.0, 1.0, 0.0, 1.0]
         });
         assert!(moved.count() > 100);
@@ -176,7 +190,10 @@ mod tests {
             step = next_step(step, generation, *improved);
             step
         });
-        assert_eq!(found.collect::<Vec<_>>(), [1.0, 0.25, 0.0625, 0.015_625, 0.0625]);
+        assert_eq!(
+            found.collect::<Vec<_>>(),
+            [1.0, 0.25, 0.0625, 0.015_625, 0.0625]
+        );
         assert_eq!(next_step(SMALLEST_STEP, 9, false), SMALLEST_STEP);
     }
 }

@@ -1,8 +1,9 @@
 //! NSGA-II: a population that spreads along the front of several values.
 //!
-//! (K. Deb, A. Pratap, S. Agarwal and T. Meyarivan, *IEEE Trans. Evol. Comput.* 6 (2002) 182; simulated binary crossover: K. Deb and R. B.
-//! Agrawal, *Complex Systems* 9 (1995) 115.) Children come from tournaments of two, won by the lower rank, of equals by the lonelier; of
-//! parents and children together the better half goes on. Genes are numbers.
+//! (K. Deb, A. Pratap, S. Agarwal and T. Meyarivan, *IEEE Trans. Evol. Comput.* 6 (2002) 182;
+//! simulated binary crossover: K. Deb and R. B. Agrawal, *Complex Systems* 9 (1995) 115.) Children
+//! come from tournaments of two, won by the lower rank, of equals by the lonelier; of parents and
+//! children together the better half goes on. Genes are numbers.
 
 use rand::{Rng, RngExt};
 
@@ -20,9 +21,15 @@ const MUTATION_INDEX: f64 = 20.0;
 /// The probability that two parents are crossed at all.
 const CROSSED: f64 = 0.9;
 
-/// One of two children by simulated binary crossover, kept in the box: their mean is that of the parents, and their distance in parts of
-/// the parents' is spread as that of the children of strings of bits.
-pub fn simulated_binary(one: &[f64], other: &[f64], space: &Space, generator: &mut impl Rng) -> Vec<f64> {
+/// One of two children by simulated binary crossover, kept in the box: their mean is that of the
+/// parents, and their distance in parts of the parents' is spread as that of the children of
+/// strings of bits.
+pub fn simulated_binary(
+    one: &[f64],
+    other: &[f64],
+    space: &Space,
+    generator: &mut impl Rng,
+) -> Vec<f64> {
     let gene = |((one, other), [lower, upper]): ((&f64, &f64), &[f64; 2])| {
         let part: f64 = generator.random();
         let power = 1.0 / (CROSSOVER_INDEX + 1.0);
@@ -30,13 +37,22 @@ pub fn simulated_binary(one: &[f64], other: &[f64], space: &Space, generator: &m
             true => (2.0 * part).powf(power),
             false => (0.5 / (1.0 - part)).powf(power),
         };
-        let sign = if generator.random::<bool>() { 1.0 } else { -1.0 };
+        let sign = if generator.random::<bool>() {
+            1.0
+        } else {
+            -1.0
+        };
         (0.5 * (one + other) + sign * 0.5 * spread * (one - other)).clamp(*lower, *upper)
     };
-    one.iter().zip(other).zip(space.bounds()).map(gene).collect()
+    one.iter()
+        .zip(other)
+        .zip(space.bounds())
+        .map(gene)
+        .collect()
 }
 
-/// Each number changed with the probability 1/n, by a part of its range that is mostly small; kept in the box.
+/// Each number changed with the probability 1/n, by a part of its range that is mostly small; kept
+/// in the box.
 pub fn polynomial_mutation(parent: &[f64], space: &Space, generator: &mut impl Rng) -> Vec<f64> {
     let rate = 1.0 / parent.len().max(1) as f64;
     let gene = |(x, [lower, upper]): (&f64, &[f64; 2])| {
@@ -54,8 +70,8 @@ pub fn polynomial_mutation(parent: &[f64], space: &Space, generator: &mut impl R
     parent.iter().zip(space.bounds()).map(gene).collect()
 }
 
-/// One run of NSGA-II: the front it ends with, everybody in it feasible. Of the options population, generations, budget and the tolerance of
-/// constraints count. The curve has the size of the front.
+/// One run of NSGA-II: the front it ends with, everybody in it feasible. Of the options population,
+/// generations, budget and the tolerance of constraints count. The curve has the size of the front.
 pub fn search_front(
     space: &Space,
     mut evaluate: impl FnMut(&[f64]) -> Evaluation,
@@ -78,7 +94,10 @@ pub fn search_front(
         if generation >= options.generations {
             break Stop::Generations;
         }
-        if options.budget.is_some_and(|budget| evaluations + size > budget) {
+        if options
+            .budget
+            .is_some_and(|budget| evaluations + size > budget)
+        {
             break Stop::Budget;
         }
         if !go_on(generation + 1) {
@@ -87,7 +106,10 @@ pub fn search_front(
         let winner = |generator: &mut _| {
             let [one, other] = [0, 1].map(|_| RngExt::random_range(generator, 0..size));
             let by_rank = standing[one].cmp(&standing[other]);
-            match by_rank.then(loneliness[other].total_cmp(&loneliness[one])).is_le() {
+            match by_rank
+                .then(loneliness[other].total_cmp(&loneliness[one]))
+                .is_le()
+            {
                 true => one,
                 false => other,
             }
@@ -112,7 +134,10 @@ pub fn search_front(
         });
         order.truncate(size);
         let mut places: Vec<Option<Individual>> = population.into_iter().map(Some).collect();
-        population = order.iter().filter_map(|index| places[*index].take()).collect();
+        population = order
+            .iter()
+            .filter_map(|index| places[*index].take())
+            .collect();
         (standing, loneliness) = standings(&population, tolerance);
         curve.push(front_size(&population, &standing, tolerance));
         generation += 1;
@@ -139,7 +164,9 @@ fn standings(population: &[Individual], tolerance: f64) -> (Vec<usize>, Vec<f64>
     let ranks = ranks(&all, tolerance);
     let mut lonely = vec![0.0; all.len()];
     for rank in 0..=ranks.iter().copied().max().unwrap_or(0) {
-        let same: Vec<usize> = (0..all.len()).filter(|index| ranks[*index] == rank).collect();
+        let same: Vec<usize> = (0..all.len())
+            .filter(|index| ranks[*index] == rank)
+            .collect();
         let of_rank: Vec<&Evaluation> = same.iter().map(|index| all[*index]).collect();
         for (index, distance) in same.iter().zip(crowding(&of_rank)) {
             lonely[*index] = distance;
@@ -151,7 +178,8 @@ fn standings(population: &[Individual], tolerance: f64) -> (Vec<usize>, Vec<f64>
 /// How many stand in the front and are feasible.
 fn front_size(population: &[Individual], ranks: &[usize], tolerance: f64) -> f64 {
     let standing = population.iter().zip(ranks);
-    let front = standing.filter(|(member, rank)| **rank == 0 && member.evaluation.is_feasible(tolerance));
+    let front =
+        standing.filter(|(member, rank)| **rank == 0 && member.evaluation.is_feasible(tolerance));
     front.count() as f64
 }
 
@@ -174,7 +202,8 @@ mod tests {
         }
     }
 
-    /// Schaffer's problem, x^2 and (x - 2)^2: the front is 0 <= x <= 2, where sqrt(f1) + sqrt(f2) = 2.
+    /// Schaffer's problem, x^2 and (x - 2)^2: the front is 0 <= x <= 2, where sqrt(f1) + sqrt(f2)
+    /// = 2.
     #[test]
     fn a_known_front_is_found_and_covered() {
         let space = Space::new(vec![[-100.0, 100.0]]).unwrap();
@@ -186,14 +215,35 @@ mod tests {
             generations: 60,
             ..Options::default()
         };
-        let (front, run) = search_front(&space, schaffer, &options, &mut generator(1, 0), &mut |_| true);
-        assert!(front.len() > 80 && run.evaluations == 6100, "{}", front.len());
+        let (front, run) = search_front(
+            &space,
+            schaffer,
+            &options,
+            &mut generator(1, 0),
+            &mut |_| true,
+        );
+        assert!(
+            front.len() > 80 && run.evaluations == 6100,
+            "{}",
+            front.len()
+        );
         let mut places: Vec<f64> = front.iter().map(|member| member.point[0]).collect();
         places.sort_by(f64::total_cmp);
-        assert!(places[0] > -0.02 && *places.last().unwrap() < 2.02, "{places:?}");
-        assert!(places.windows(2).all(|pair| pair[1] - pair[0] < 0.15), "{places:?}");
+        assert!(
+            places[0] > -0.02 && *places.last().unwrap() < 2.02,
+            "{places:?}"
+        );
+        assert!(
+            places.windows(2).all(|pair| pair[1] - pair[0] < 0.15),
+            "{places:?}"
+        );
         for member in &front {
-            let sum: f64 = member.evaluation.objectives.iter().map(|value| value.sqrt()).sum();
+            let sum: f64 = member
+                .evaluation
+                .objectives
+                .iter()
+                .map(|value| value.sqrt())
+                .sum();
             assert!((sum - 2.0).abs() < 0.05, "{member:?}");
         }
     }

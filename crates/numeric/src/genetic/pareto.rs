@@ -4,7 +4,8 @@
 
 use super::space::Evaluation;
 
-/// Whether one is no worse in every value and better in one; with constraints, whether it breaks them less.
+/// Whether one is no worse in every value and better in one; with constraints, whether it breaks
+/// them less.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -64,21 +65,33 @@ pub fn non_dominated(all: &[&Evaluation], tolerance: f64) -> Vec<usize> {
     let stands = |index: &usize| {
         let is_worse = |(place, other): (usize, &&Evaluation)| {
             dominates(other, all[*index], tolerance)
-                || place < *index && other.objectives == all[*index].objectives && other.is_feasible(tolerance)
+                || place < *index
+                    && other.objectives == all[*index].objectives
+                    && other.is_feasible(tolerance)
         };
         !all.iter().enumerate().any(is_worse)
     };
     (0..all.len()).filter(stands).collect()
 }
 
-/// How lonely everybody is among these values: the sum over them of the distance between the neighbours on either side, in parts of the
-/// whole range; infinite at the ends.
+/// How lonely everybody is among these values: the sum over them of the distance between the
+/// neighbours on either side, in parts of the whole range; infinite at the ends.
 pub fn crowding(all: &[&Evaluation]) -> Vec<f64> {
     let mut distance = vec![0.0; all.len()];
-    let values = all.iter().map(|each| each.objectives.len()).max().unwrap_or(0);
+    let values = all
+        .iter()
+        .map(|each| each.objectives.len())
+        .max()
+        .unwrap_or(0);
     for value in 0..values {
         // What is not there is as bad as can be.
-        let of = |index: usize| all[index].objectives.get(value).copied().unwrap_or(f64::INFINITY);
+        let of = |index: usize| {
+            all[index]
+                .objectives
+                .get(value)
+                .copied()
+                .unwrap_or(f64::INFINITY)
+        };
         let mut order: Vec<usize> = (0..all.len()).collect();
         order.sort_by(|one, other| of(*one).total_cmp(&of(*other)));
         let (Some(&first), Some(&last)) = (order.first(), order.last()) else {
@@ -136,7 +149,12 @@ mod tests {
 
     #[test]
     fn the_lonely_are_those_with_room_around_them() {
-        let all = of(&[vec![0.0, 4.0], vec![1.0, 3.0], vec![1.5, 2.5], vec![4.0, 0.0]]);
+        let all = of(&[
+            vec![0.0, 4.0],
+            vec![1.0, 3.0],
+            vec![1.5, 2.5],
+            vec![4.0, 0.0],
+        ]);
         let found = crowding(&all.iter().collect::<Vec<_>>());
         assert!(found[0].is_infinite() && found[3].is_infinite());
         assert!(

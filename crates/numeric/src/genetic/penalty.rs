@@ -1,9 +1,10 @@
 //! What a point is worth that breaks a constraint: a score for every individual, to be small.
 //!
 //! - Death penalty: none at all, infinite.
-//! - Feasible first (K. Deb, *Comput. Methods Appl. Mech. Eng.* 186 (2000) 311): the worst value of those that break none, plus the sum of
-//!   what it breaks.
-//! - Augmented Lagrangian (R. T. Rockafellar, *Math. Program.* 5 (1973) 354), f under c_e = 0 and c <= 0:
+//! - Feasible first (K. Deb, *Comput. Methods Appl. Mech. Eng.* 186 (2000) 311): the worst value of
+//!   those that break none, plus the sum of what it breaks.
+//! - Augmented Lagrangian (R. T. Rockafellar, *Math. Program.* 5 (1973) 354), f under c_e = 0 and c
+//!   <= 0:
 //!
 //! ```text
 //! score = f + sum_e (l_e c_e + (rho/2) c_e^2) + (1/(2 rho)) sum (max(0, l + rho c)^2 - l^2)
@@ -12,8 +13,9 @@
 //!   else  rho <- rho times the penalty factor
 //! ```
 //!
-//! rho begins as the initial penalty, l at zero. MATLAB's `ga` has inequalities in a logarithm instead; its initial penalty 10 and factor 100
-//! are these rho and its factor. Without constraints that are not linear neither does anything.
+//! rho begins as the initial penalty, l at zero. MATLAB's `ga` has inequalities in a logarithm
+//! instead; its initial penalty 10 and factor 100 are these rho and its factor. Without constraints
+//! that are not linear neither does anything.
 
 use super::space::Evaluation;
 
@@ -104,11 +106,15 @@ pub fn scores(
         false => f64::INFINITY,
     };
     match (penalty, multipliers) {
-        (Penalty::AugmentedLagrangian { .. }, Some(multipliers)) => {
-            population.iter().map(|of| multipliers.lagrangian(of)).collect()
-        }
+        (Penalty::AugmentedLagrangian { .. }, Some(multipliers)) => population
+            .iter()
+            .map(|of| multipliers.lagrangian(of))
+            .collect(),
         (Penalty::FeasibleFirst, _) => {
-            let feasible = population.iter().map(death).filter(|value| value.is_finite());
+            let feasible = population
+                .iter()
+                .map(death)
+                .filter(|value| value.is_finite());
             let worst = feasible.fold(f64::NEG_INFINITY, f64::max);
             let worst = if worst.is_finite() { worst } else { 0.0 };
             let score = |of: &&Evaluation| match of.violation(tolerance) {
@@ -158,7 +164,8 @@ mod tests {
         assert!((multipliers.lagrangian(&at(5.0, 0.1, 0.2)) - 5.25).abs() < 1e-12);
     }
 
-    /// min x^2 + y^2 under x + y = 1 and x >= 0.75: x = 0.75, and l of the equality -1/2, of the inequality 1.
+    /// min x^2 + y^2 under x + y = 1 and x >= 0.75: x = 0.75, and l of the equality -1/2, of the
+    /// inequality 1.
     #[test]
     fn the_multipliers_become_those_of_lagrange() {
         let mut multipliers = Multipliers::new(10.0, &at(0.0, 0.0, 0.0));
@@ -182,8 +189,14 @@ mod tests {
             (last[0] - 0.75).abs() < 1e-6 && (last[1] - 0.25).abs() < 1e-6,
             "{last:?}"
         );
-        assert!((multipliers.equalities[0] + 0.5).abs() < 1e-3, "{multipliers:?}");
-        assert!((multipliers.inequalities[0] - 1.0).abs() < 1e-3, "{multipliers:?}");
+        assert!(
+            (multipliers.equalities[0] + 0.5).abs() < 1e-3,
+            "{multipliers:?}"
+        );
+        assert!(
+            (multipliers.inequalities[0] - 1.0).abs() < 1e-3,
+            "{multipliers:?}"
+        );
     }
 
     #[test]

@@ -69,13 +69,17 @@ impl Default for Options {
 #[non_exhaustive]
 pub enum OptionsError {
     /// Fewer than two have nobody to cross with.
-    #[error("population = {0} cannot cross: a population needs 2 or more, {MOST_INDIVIDUALS} at most")]
+    #[error(
+        "population = {0} cannot cross: a population needs 2 or more, {MOST_INDIVIDUALS} at most"
+    )]
     Population(usize),
     /// Nothing would happen.
     #[error("generations = {0}: a run needs 1 or more, {MOST_GENERATIONS} at most")]
     Generations(usize),
     /// Nobody would be left to change.
-    #[error("elite = {elite} leaves nobody of a population of {population} to change: it must be smaller")]
+    #[error(
+        "elite = {elite} leaves nobody of a population of {population} to change: it must be smaller"
+    )]
     Elite {
         /// The elite.
         elite: usize,
@@ -86,7 +90,9 @@ pub enum OptionsError {
     #[error("crossover_fraction must lie between 0 and 1, not {0}")]
     Fraction(f64),
     /// A child short of the better parent.
-    #[error("crossover_ratio must be a number of 1 or more, not {0}: the child lies beyond the better parent")]
+    #[error(
+        "crossover_ratio must be a number of 1 or more, not {0}: the child lies beyond the better parent"
+    )]
     Ratio(f64),
     /// No probability.
     #[error("mutation_rate must lie between 0 and 1, not {0}")]
@@ -95,7 +101,9 @@ pub enum OptionsError {
     #[error("bits must be a whole number from 1 to 52, not {0}")]
     Bits(u32),
     /// An operator that needs numbers.
-    #[error("{operator} needs numbers and knows nothing of bits: use {instead}, or leave out `coding`")]
+    #[error(
+        "{operator} needs numbers and knows nothing of bits: use {instead}, or leave out `coding`"
+    )]
     NeedsNumbers {
         /// What was asked for.
         operator: &'static str,
@@ -103,7 +111,9 @@ pub enum OptionsError {
         instead: &'static str,
     },
     /// An operator that needs bits.
-    #[error("mutation \"bit-flip\" needs coding = \"bits\": give that too, or use \"adaptive-feasible\"")]
+    #[error(
+        "mutation \"bit-flip\" needs coding = \"bits\": give that too, or use \"adaptive-feasible\""
+    )]
     NeedsBits,
     /// A penalty that is none.
     #[error("{key} must be a positive number, not {value}")]
@@ -161,12 +171,15 @@ impl Options {
             return Err(OptionsError::Window);
         }
         let bits = match self.coding {
-            Coding::Bits(bits) if !(1..=52).contains(&bits) => return Err(OptionsError::Bits(bits)),
+            Coding::Bits(bits) if !(1..=52).contains(&bits) => {
+                return Err(OptionsError::Bits(bits));
+            }
             coding => coding != Coding::Real,
         };
         match self.crossover {
             Crossover::Heuristic(_) if bits => {
-                let (operator, instead) = ("crossover \"heuristic\"", "\"scattered\" or \"one-point\"");
+                let (operator, instead) =
+                    ("crossover \"heuristic\"", "\"scattered\" or \"one-point\"");
                 return Err(OptionsError::NeedsNumbers { operator, instead });
             }
             Crossover::Heuristic(ratio) if !(ratio >= 1.0 && ratio.is_finite()) => {
@@ -180,7 +193,9 @@ impl Options {
                 return Err(OptionsError::NeedsNumbers { operator, instead });
             }
             Mutation::BitFlips(_) if !bits => return Err(OptionsError::NeedsBits),
-            Mutation::BitFlips(rate) if !(0.0..=1.0).contains(&rate) => return Err(OptionsError::Rate(rate)),
+            Mutation::BitFlips(rate) if !(0.0..=1.0).contains(&rate) => {
+                return Err(OptionsError::Rate(rate));
+            }
             _ => {}
         }
         let mut positive = vec![
@@ -239,7 +254,8 @@ pub struct Individual {
 pub struct Run {
     /// The best of all points that break no constraint; nothing where there was none.
     pub best: Option<Individual>,
-    /// Its value after the random population and after every generation; infinite while there was none.
+    /// Its value after the random population and after every generation; infinite while there was
+    /// none.
     pub curve: Vec<f64>,
     /// Generations after the random population.
     pub generations: usize,
@@ -287,8 +303,16 @@ pub fn search(
     };
     let (crossed, mutated) = options.children();
     let score = |population: &[Member], multipliers: Option<&Multipliers>| {
-        let evaluations: Vec<&Evaluation> = population.iter().map(|member| &member.individual.evaluation).collect();
-        scores(&evaluations, options.penalty, multipliers, options.constraint_tolerance)
+        let evaluations: Vec<&Evaluation> = population
+            .iter()
+            .map(|member| &member.individual.evaluation)
+            .collect();
+        scores(
+            &evaluations,
+            options.penalty,
+            multipliers,
+            options.constraint_tolerance,
+        )
     };
     let (mut curve, mut step, mut generation) = (vec![nursery.value()], 1.0, 0);
     let stop = loop {
@@ -301,7 +325,13 @@ pub fn search(
         let scored = score(&population, multipliers.as_ref());
         let expected = rank_scaling(&scored, 2 * crossed + mutated);
         let parents = stochastic_uniform(&expected, 2 * crossed + mutated, generator);
-        let children = children(&population, &scored, &parents, (space, options, step), generator);
+        let children = children(
+            &population,
+            &scored,
+            &parents,
+            (space, options, step),
+            generator,
+        );
         let mut order: Vec<usize> = (0..population.len()).collect();
         order.sort_by(|one, other| scored[*one].total_cmp(&scored[*other]));
         let mut places: Vec<Option<Member>> = population.into_iter().map(Some).collect();
@@ -349,7 +379,11 @@ impl<E: FnMut(&[f64]) -> Evaluation> Nursery<'_, E> {
         let individual = Individual { point, evaluation };
         let better = individual.evaluation.value() < self.value();
         let first = self.best.is_none();
-        if individual.evaluation.is_feasible(self.options.constraint_tolerance) && (first || better) {
+        if individual
+            .evaluation
+            .is_feasible(self.options.constraint_tolerance)
+            && (first || better)
+        {
             self.best = Some(individual.clone());
         }
         Member { genes, individual }
@@ -395,7 +429,9 @@ fn children(
     for pair in pairs.chunks_exact(2) {
         let (one, other) = (&population[pair[0]].genes, &population[pair[1]].genes);
         children.push(match options.crossover {
-            Crossover::Heuristic(ratio) if scored[pair[0]] <= scored[pair[1]] => heuristic(other, one, ratio, space),
+            Crossover::Heuristic(ratio) if scored[pair[0]] <= scored[pair[1]] => {
+                heuristic(other, one, ratio, space)
+            }
             Crossover::Heuristic(ratio) => heuristic(one, other, ratio, space),
             Crossover::Scattered => scattered(one, other, generator),
             Crossover::OnePoint => one_point(one, other, generator),
@@ -421,9 +457,20 @@ mod tests {
         Evaluation::of(point.iter().map(term).sum())
     }
 
-    fn run(bounds: [f64; 2], evaluate: fn(&[f64]) -> Evaluation, options: &Options, stream: u64) -> Run {
+    fn run(
+        bounds: [f64; 2],
+        evaluate: fn(&[f64]) -> Evaluation,
+        options: &Options,
+        stream: u64,
+    ) -> Run {
         let space = Space::new(vec![bounds; 2]).unwrap();
-        search(&space, evaluate, options, &mut generator(7, stream), &mut |_| true)
+        search(
+            &space,
+            evaluate,
+            options,
+            &mut generator(7, stream),
+            &mut |_| true,
+        )
     }
 
     #[test]
@@ -449,12 +496,16 @@ mod tests {
         }
     }
 
-    /// Random numbers of a library may change from version to version: these are those of the lock file.
+    /// Random numbers of a library may change from version to version: these are those of the lock
+    /// file.
     #[test]
     fn a_seed_gives_the_same_run_for_ever() {
         let first = run([-5.0, 5.5], rastrigin, &Options::default(), 0);
         assert_eq!(first, run([-5.0, 5.5], rastrigin, &Options::default(), 0));
-        assert_ne!(first.curve, run([-5.0, 5.5], rastrigin, &Options::default(), 1).curve);
+        assert_ne!(
+            first.curve,
+            run([-5.0, 5.5], rastrigin, &Options::default(), 1).curve
+        );
         assert_eq!(first.curve[0], GOLDEN);
     }
 
@@ -488,14 +539,30 @@ mod tests {
                 penalty,
                 ..Options::default()
             };
-            let evaluate = |point: &[f64]| if equality { on_a_line(point) } else { beyond(point) };
-            let run = search(&space, evaluate, &options, &mut generator(1, 0), &mut |_| true);
+            let evaluate = |point: &[f64]| {
+                if equality {
+                    on_a_line(point)
+                } else {
+                    beyond(point)
+                }
+            };
+            let run = search(
+                &space,
+                evaluate,
+                &options,
+                &mut generator(1, 0),
+                &mut |_| true,
+            );
             let best = run.best.expect("a point that keeps them");
             assert!(best.evaluation.is_feasible(options.constraint_tolerance));
             let expected = if equality { [0.75, 0.25] } else { [0.75, 0.0] };
             let value = expected[0] * expected[0] + 2.0 * expected[1] * expected[1];
             let found = best.evaluation.value();
-            assert!(found < value + 0.02, "{penalty:?} {equality}: {:?}", best.point);
+            assert!(
+                found < value + 0.02,
+                "{penalty:?} {equality}: {:?}",
+                best.point
+            );
         }
     }
 
@@ -513,10 +580,19 @@ mod tests {
             ..Options::default()
         };
         let ended = run_of(&little);
-        assert_eq!((ended.stop, ended.evaluations), (Stop::Budget, 100 + 3 * 98));
+        assert_eq!(
+            (ended.stop, ended.evaluations),
+            (Stop::Budget, 100 + 3 * 98)
+        );
         let space = Space::new(vec![[-5.0, 5.5]; 2]).unwrap();
         let mut until = |generation| generation <= 4;
-        let ended = search(&space, rastrigin, &Options::default(), &mut generator(7, 0), &mut until);
+        let ended = search(
+            &space,
+            rastrigin,
+            &Options::default(),
+            &mut generator(7, 0),
+            &mut until,
+        );
         assert_eq!((ended.stop, ended.generations), (Stop::Interrupted, 4));
         let whole = run_of(&Options::default());
         assert_eq!(ended.curve[..], whole.curve[..5]);
@@ -525,8 +601,14 @@ mod tests {
     #[test]
     fn what_makes_no_population_is_refused_by_name() {
         let usual = Options::default();
-        let population = Options { population: 1, ..usual };
-        let elite = Options { elite: 100, ..usual };
+        let population = Options {
+            population: 1,
+            ..usual
+        };
+        let elite = Options {
+            elite: 100,
+            ..usual
+        };
         let generations = Options {
             generations: 0,
             ..usual

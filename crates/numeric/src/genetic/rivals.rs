@@ -1,13 +1,17 @@
-//! What a genetic algorithm is to be measured by: points drawn at random, and differential evolution.
+//! What a genetic algorithm is to be measured by: points drawn at random, and differential
+//! evolution.
 //!
-//! The latter is that of the crate `basin`, DE/rand/1/bin with its default weights (R. Storn and K. Price, *J. Glob. Optim.* 11 (1997) 341).
-//! Both get the same number of evaluations; constraints by the rule that feasible points come first.
+//! The latter is that of the crate `basin`, DE/rand/1/bin with its default weights (R. Storn and K.
+//! Price, *J. Glob. Optim.* 11 (1997) 341). Both get the same number of evaluations; constraints by
+//! the rule that feasible points come first.
 
 use std::cell::RefCell;
 use std::convert::Infallible;
 
 use basin::PopulationProgress;
-use basin::{BoxBounds, ConstraintDescription, ConstraintSet, Constraints, CostFunction, De, Executor};
+use basin::{
+    BoxBounds, ConstraintDescription, ConstraintSet, Constraints, CostFunction, De, Executor,
+};
 use rand::Rng;
 
 use super::population::{Individual, Run};
@@ -53,7 +57,9 @@ impl<F: FnMut(&[f64]) -> Evaluation> Watch<F> {
     }
 
     fn value(&self) -> f64 {
-        self.best.as_ref().map_or(f64::INFINITY, |best| best.evaluation.value())
+        self.best
+            .as_ref()
+            .map_or(f64::INFINITY, |best| best.evaluation.value())
     }
 
     fn finish(self, stop: Stop) -> Run {
@@ -67,7 +73,8 @@ impl<F: FnMut(&[f64]) -> Evaluation> Watch<F> {
     }
 }
 
-/// So many points drawn evenly from the box; the curve has the best value after every `every` of them.
+/// So many points drawn evenly from the box; the curve has the best value after every `every` of
+/// them.
 pub fn random_search(
     space: &Space,
     evaluate: impl FnMut(&[f64]) -> Evaluation,
@@ -97,7 +104,8 @@ impl<F> Constraints for &Boxed<F> {
     }
 }
 
-/// What a point costs that breaks a constraint, or has no value: more than any that has one, and finite.
+/// What a point costs that breaks a constraint, or has no value: more than any that has one, and
+/// finite.
 const BROKEN: f64 = 1e100;
 
 impl<F: FnMut(&[f64]) -> Evaluation> CostFunction for &Boxed<F> {
@@ -116,8 +124,8 @@ impl<F: FnMut(&[f64]) -> Evaluation> CostFunction for &Boxed<F> {
     }
 }
 
-/// Differential evolution with ten individuals for every variable, for about so many evaluations. The curve has the best value after
-/// every `every` evaluations.
+/// Differential evolution with ten individuals for every variable, for about so many evaluations.
+/// The curve has the best value after every `every` evaluations.
 pub fn differential_evolution(
     space: &Space,
     evaluate: impl FnMut(&[f64]) -> Evaluation,
@@ -125,8 +133,14 @@ pub fn differential_evolution(
     tolerance: f64,
     seed: u64,
 ) -> Run {
-    let (lower, upper): (Vec<f64>, Vec<f64>) = space.bounds().iter().map(|[lower, upper]| (*lower, *upper)).unzip();
-    let size = De::<f64>::default_pop_size(lower.len()).min(evaluations / 2).max(4);
+    let (lower, upper): (Vec<f64>, Vec<f64>) = space
+        .bounds()
+        .iter()
+        .map(|[lower, upper]| (*lower, *upper))
+        .unzip();
+    let size = De::<f64>::default_pop_size(lower.len())
+        .min(evaluations / 2)
+        .max(4);
     let problem = Boxed {
         watch: RefCell::new(Watch::new(evaluate, tolerance, every.max(1))),
         lower,
@@ -156,7 +170,8 @@ mod tests {
         assert_eq!((drawn.evaluations, drawn.curve.len()), (4000, 40));
         let evolved = differential_evolution(&space, bowl, (4000, 100), 1e-3, 1);
         assert_eq!((evolved.evaluations, evolved.curve.len()), (4000, 40));
-        let [drawn, evolved] = [drawn, evolved].map(|run| run.best.expect("a point").evaluation.value());
+        let [drawn, evolved] =
+            [drawn, evolved].map(|run| run.best.expect("a point").evaluation.value());
         assert!(evolved < 1e-3 && evolved < drawn, "{evolved} {drawn}");
     }
 
@@ -175,6 +190,9 @@ mod tests {
         ] {
             assert!(best.expect("a point").point[0] >= 0.5);
         }
-        assert_eq!(differential_evolution(&space, never, (500, 100), 1e-3, 1).best, None);
+        assert_eq!(
+            differential_evolution(&space, never, (500, 100), 1e-3, 1).best,
+            None
+        );
     }
 }

@@ -1,7 +1,8 @@
 //! Fitness scaling: how many parents are expected of each individual.
 
-/// Expectations by rank: the individual of rank r, the best of rank 1, gets 1/sqrt(r), scaled so that all together are the number of
-/// parents. `scores` are to be small; equal ones keep their order.
+/// Expectations by rank: the individual of rank r, the best of rank 1, gets 1/sqrt(r), scaled so
+/// that all together are the number of parents. `scores` are to be small; equal ones keep their
+/// order.
 ///
 /// How far apart scores are plays no part, so neither does the unit of what is sought.
 ///
@@ -21,7 +22,9 @@ pub fn rank_scaling(scores: &[f64], parents: usize) -> Vec<f64> {
         expected[index] = 1.0 / ((rank + 1) as f64).sqrt();
     }
     let sum: f64 = expected.iter().sum();
-    expected.iter_mut().for_each(|value| *value *= parents as f64 / sum);
+    expected
+        .iter_mut()
+        .for_each(|value| *value *= parents as f64 / sum);
     expected
 }
 

@@ -3,10 +3,12 @@
 use rand::seq::SliceRandom;
 use rand::{Rng, RngExt};
 
-/// Stochastic uniform selection, Baker's stochastic universal sampling: the weights laid end to end on a line, and equal steps along it
-/// from a random place in the first one; the parent is whose part is met. Parents come in random order.
+/// Stochastic uniform selection, Baker's stochastic universal sampling: the weights laid end to end
+/// on a line, and equal steps along it from a random place in the first one; the parent is whose
+/// part is met. Parents come in random order.
 ///
-/// Of an individual with the share w of all weights and n parents, n w rounded down or up are chosen, never more or fewer.
+/// Of an individual with the share w of all weights and n parents, n w rounded down or up are
+/// chosen, never more or fewer.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -28,7 +30,10 @@ pub fn stochastic_uniform(weights: &[f64], parents: usize, generator: &mut impl 
         }
     }
     // Rounding may leave the last step beyond the end.
-    let last = weights.iter().rposition(|weight| *weight > 0.0).unwrap_or_default();
+    let last = weights
+        .iter()
+        .rposition(|weight| *weight > 0.0)
+        .unwrap_or_default();
     chosen.resize(parents, last);
     chosen.shuffle(generator);
     chosen

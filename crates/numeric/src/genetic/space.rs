@@ -39,7 +39,11 @@ impl Space {
             let range = upper - lower;
             if !(range > 0.0 && range.is_finite()) {
                 let number = index + 1;
-                return Err(SpaceError::Inverted { number, lower, upper });
+                return Err(SpaceError::Inverted {
+                    number,
+                    lower,
+                    upper,
+                });
             }
         }
         Ok(Self(bounds))
@@ -58,7 +62,9 @@ impl Space {
 
     /// The point at these parts of the ranges, 0 the lower and 1 the upper bound, never outside.
     pub fn at(&self, parts: &[f64]) -> Vec<f64> {
-        let place = |(part, [lower, upper]): (&f64, &[f64; 2])| (lower + part * (upper - lower)).clamp(*lower, *upper);
+        let place = |(part, [lower, upper]): (&f64, &[f64; 2])| {
+            (lower + part * (upper - lower)).clamp(*lower, *upper)
+        };
         parts.iter().zip(&self.0).map(place).collect()
     }
 
@@ -97,9 +103,14 @@ impl Evaluation {
 
     /// By how much it breaks its constraints, all together; an equality holds up to the tolerance.
     pub fn violation(&self, tolerance: f64) -> f64 {
-        let equalities = self.equalities.iter().map(|value| (value.abs() - tolerance).max(0.0));
+        let equalities = self
+            .equalities
+            .iter()
+            .map(|value| (value.abs() - tolerance).max(0.0));
         let inequalities = self.inequalities.iter().map(|value| value.max(0.0));
-        let sum = equalities.chain(inequalities).fold(0.0, |sum, part| sum + part);
+        let sum = equalities
+            .chain(inequalities)
+            .fold(0.0, |sum, part| sum + part);
         if sum.is_nan() { f64::INFINITY } else { sum }
     }
 

@@ -1,4 +1,5 @@
-//! When a run ends: the best value has ceased to change, or its generations or evaluations are used up.
+//! When a run ends: the best value has ceased to change, or its generations or evaluations are used
+//! up.
 //!
 //! With B_g the best value up to generation g, w the window:
 //!
@@ -7,8 +8,9 @@
 //! weighted  sum_n (1/2)^n |B_(g-n+1) - B_(g-n)|/max(1, |B_g|), n = 1 .. w, <= tolerance      before
 //! ```
 //!
-//! g is counted from 1, the first generation after the random population, so a window of 50 ends no run before generation 51: a run of
-//! exactly 51 generations is one whose best value hardly moved after the first.
+//! g is counted from 1, the first generation after the random population, so a window of 50 ends no
+//! run before generation 51: a run of exactly 51 generations is one whose best value hardly moved
+//! after the first.
 
 /// How the change of the best value over a window is measured.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -35,7 +37,12 @@ pub enum Stop {
 
 impl Stop {
     /// Every reason.
-    pub const ALL: [Self; 4] = [Self::Stalled, Self::Generations, Self::Budget, Self::Interrupted];
+    pub const ALL: [Self; 4] = [
+        Self::Stalled,
+        Self::Generations,
+        Self::Budget,
+        Self::Interrupted,
+    ];
 
     /// `stalled`
     pub const fn name(self) -> &'static str {
@@ -53,7 +60,8 @@ impl Stop {
     }
 }
 
-/// Whether the best values, that of the random population first, have ceased to change. Where there was none all along they have too.
+/// Whether the best values, that of the random population first, have ceased to change. Where there
+/// was none all along they have too.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -97,16 +105,20 @@ mod tests {
 
     /// The best values of a run that halves what is missing to 10 each generation.
     fn coming_down(count: i32) -> Vec<f64> {
-        (0..count).map(|generation| 10.0 + 0.5_f64.powi(generation)).collect()
+        (0..count)
+            .map(|generation| 10.0 + 0.5_f64.powi(generation))
+            .collect()
     }
 
     #[test]
     fn each_test_ends_a_run_where_its_formula_says() {
         let best = coming_down(120);
-        let end = |window, test| (1..120).find(|end| has_stalled(&best[..*end], window, 1e-6, test));
+        let end =
+            |window, test| (1..120).find(|end| has_stalled(&best[..*end], window, 1e-6, test));
         // 2^-(g-w)/(10 w) = 1e-6 at g - w = 14.3 for w = 5, and g values stand after the first.
         assert_eq!(end(5, StallTest::Average), Some(15 + 5 + 1));
-        // Each of w terms is 2^-n 2^(n-1-g) = 2^-(g+1), over 10: w 2^-(g+1) = 1e-5 at g = 17.9 for w = 5.
+        // Each of w terms is 2^-n 2^(n-1-g) = 2^-(g+1), over 10: w 2^-(g+1) = 1e-5 at g = 17.9 for
+        // w = 5.
         assert_eq!(end(5, StallTest::Weighted), Some(18 + 1));
         // 2^-(g-w)/(10 w) = 1e-6 at g - w = 11 for w = 50.
         assert_eq!(end(50, StallTest::Average), Some(11 + 50 + 1));
@@ -117,7 +129,12 @@ mod tests {
         let mut best = vec![f64::INFINITY; 30];
         best.extend([5.0; 10]);
         assert!(!has_stalled(&best, 20, 1e-6, StallTest::Average));
-        assert!(has_stalled(&[f64::INFINITY; 22], 20, 1e-6, StallTest::Average));
+        assert!(has_stalled(
+            &[f64::INFINITY; 22],
+            20,
+            1e-6,
+            StallTest::Average
+        ));
         assert!(!has_stalled(&[], 20, 1e-6, StallTest::Weighted));
     }
 }

@@ -1,11 +1,12 @@
 //! The true frequency, by ways that share nothing with the formulas.
 //!
-//! Conservative motion: adaptive quadrature of the time that [`crate::numeric::ode::energy`] gives for every angle between the two
-//! turning points.
+//! Conservative motion: adaptive quadrature of the time that [`crate::numeric::ode::energy`] gives
+//! for every angle between the two turning points.
 //!
 //! Any other periodic motion: the Runge-Kutta return to a turning point.
 //!
-//! Only the judge (`mod@crate::verify`) may use this file; `tests/library/layers.rs` holds the wall.
+//! Only the judge (`mod@crate::verify`) may use this file; `tests/library/layers.rs` holds the
+//! wall.
 
 pub use crate::numeric::ode::energy::{Force, PeriodError, turning_point};
 
@@ -29,7 +30,11 @@ const STEP_TOLERANCE: f64 = 1e-13;
 /// assert!((std::f64::consts::TAU / period - 0.860_608_346_679_613).abs() < 1e-12);
 /// # Ok::<(), lindstedt::numeric::period::PeriodError>(())
 /// ```
-pub fn conservative_period(force: &Force, equilibrium: f64, start: f64) -> Result<f64, PeriodError> {
+pub fn conservative_period(
+    force: &Force,
+    equilibrium: f64,
+    start: f64,
+) -> Result<f64, PeriodError> {
     period_between(force, start, turning_point(force, equilibrium, start)?)
 }
 
@@ -60,9 +65,12 @@ fn period_of_rates(rates: &Rates) -> Result<f64, PeriodError> {
             rates.tolerance(piece),
         ) {
             Ok((value, error)) => (half, estimate) = (half + value, estimate + error),
-            // The force itself is rounded where it is a small difference, as x^2 - 4 near x = 2: no panel gets below that.
+            // The force itself is rounded where it is a small difference, as x^2 - 4 near x = 2: no
+            // panel gets below that.
             Err(QuadratureError::NotConverged {
-                value, error_estimate, ..
+                value,
+                error_estimate,
+                ..
             }) => (half, estimate) = (half + value, estimate + error_estimate),
             Err(error) => return Err(failure.unwrap_or(error).into()),
         }
@@ -79,8 +87,8 @@ fn period_of_rates(rates: &Rates) -> Result<f64, PeriodError> {
 
 /// A motion from one turning point to the next on the same side, in the units of the equation.
 ///
-/// Runge-Kutta compares its errors with absolute numbers, so the path is kept in units of the amplitude and of the time
-/// `sqrt(amplitude/acceleration)`.
+/// Runge-Kutta compares its errors with absolute numbers, so the path is kept in units of the
+/// amplitude and of the time `sqrt(amplitude/acceleration)`.
 #[derive(Clone, Debug)]
 pub struct Swing {
     path: Trajectory,
@@ -105,7 +113,10 @@ impl Swing {
     /// Position and velocity at a time from zero to the period.
     pub fn at(&self, t: f64) -> Option<(f64, f64)> {
         let (x, v) = self.path.at((t / self.time).min(self.path.end().t))?;
-        Some((self.equilibrium + self.length * x, self.length / self.time * v))
+        Some((
+            self.equilibrium + self.length * x,
+            self.length / self.time * v,
+        ))
     }
 
     /// The turning point at the end.
@@ -141,7 +152,8 @@ pub fn swing(
     swing_with_cuts(acceleration, &[], equilibrium, start, longest)
 }
 
-/// As [`swing`], restarted at every cut, so that no step jumps over a corner or a narrow place of the force.
+/// As [`swing`], restarted at every cut, so that no step jumps over a corner or a narrow place of
+/// the force.
 ///
 /// # Errors
 /// See [`PeriodError`].
@@ -214,8 +226,14 @@ pub fn swing_with_cuts(
     }
 }
 
-/// The reason why a motion cannot be followed past a state: a place where the force has no value, or that it has left for good.
-fn ending(acceleration: &dyn Fn(f64, f64, f64) -> f64, equilibrium: f64, start: f64, state: State) -> PeriodError {
+/// The reason why a motion cannot be followed past a state: a place where the force has no value,
+/// or that it has left for good.
+fn ending(
+    acceleration: &dyn Fn(f64, f64, f64) -> f64,
+    equilibrium: f64,
+    start: f64,
+    state: State,
+) -> PeriodError {
     /// So many amplitudes away nothing is swinging.
     const FAR: f64 = 1e6;
     /// Times the force at rest, beyond which it is the speed that drives the motion.
@@ -246,7 +264,11 @@ fn ending(acceleration: &dyn Fn(f64, f64, f64) -> f64, equilibrium: f64, start: 
 mod tests {
     use super::*;
 
-    fn period_of(force: &dyn Fn(f64) -> f64, equilibrium: f64, start: f64) -> Result<f64, PeriodError> {
+    fn period_of(
+        force: &dyn Fn(f64) -> f64,
+        equilibrium: f64,
+        start: f64,
+    ) -> Result<f64, PeriodError> {
         conservative_period(&Force::smooth(force), equilibrium, start)
     }
 
@@ -254,7 +276,8 @@ mod tests {
     fn pendulum_and_duffing_by_elliptic_functions() {
         for amplitude in [0.01, 0.5, 1.5, 2.5, 3.0, 3.13, -1.5] {
             let period = period_of(&|x: f64| x.sin(), 0.0, amplitude).unwrap();
-            // By the complementary parameter 1 - m = cos^2(A/2): near the separatrix m itself has lost its digits.
+            // By the complementary parameter 1 - m = cos^2(A/2): near the separatrix m itself has
+            // lost its digits.
             let exact = 4.0 * spec_math::cephes64::ellpk((0.5 * amplitude).cos().powi(2));
             assert!(
                 (period / exact - 1.0).abs() < 1e-13,
@@ -264,13 +287,17 @@ mod tests {
         for s in [-0.9, 0.1, 1.0, 10.0, 1000.0] {
             let period = period_of(&|x: f64| x + s * x * x * x, 0.0, 1.0).unwrap();
             let exact = 4.0 * ellip::ellipk(s / (2.0 * (1.0 + s))).unwrap() / f64::sqrt(1.0 + s);
-            assert!((period / exact - 1.0).abs() < 1e-13, "s = {s}: {period} {exact}");
+            assert!(
+                (period / exact - 1.0).abs() < 1e-13,
+                "s = {s}: {period} {exact}"
+            );
         }
     }
 
     #[test]
     fn an_uneven_well_has_its_own_turning_point() {
-        // V = x^2/2 + x^3/3 at x = 1/4: V(x_1) = V(1/4) is a cubic with root 1/4, leaving a quadratic.
+        // V = x^2/2 + x^3/3 at x = 1/4: V(x_1) = V(1/4) is a cubic with root 1/4, leaving a
+        // quadratic.
         let end = turning_point(&Force::smooth(&|x: f64| x + x * x), 0.0, 0.25).unwrap();
         let quadratic = |x: f64| x * x + 1.75 * x + 0.4375;
         assert!(quadratic(end).abs() < 1e-15, "{end}");

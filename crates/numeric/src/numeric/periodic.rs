@@ -1,15 +1,16 @@
 //! Periodic motions of a driven equation, found by Newton's method on the map of one period.
 //!
-//! Reference: A. H. Nayfeh, B. Balachandran, *Applied Nonlinear Dynamics*, Wiley 1995, section 5.1 (shooting) and 3.2 (Floquet
-//! multipliers).
+//! Reference: A. H. Nayfeh, B. Balachandran, *Applied Nonlinear Dynamics*, Wiley 1995, section 5.1
+//! (shooting) and 3.2 (Floquet multipliers).
 //!
 //! ```text
 //! x'' = g(t, x, v),  g of period T in t:      M(x(0), v(0)) = (x(T), v(T)),      M(y) = y by Newton's method
 //! multipliers: the eigenvalues of dM/dy;      the motion attracts where both lie inside the unit circle
 //! ```
 //!
-//! The start is only where the search begins: the motion found is one of the equation alone, stable or not. Motions that are known
-//! already are kept away from by deflation (P. E. Farrell, A. Birkisson, S. W. Funke, SIAM J. Sci. Comput. 37, 2015, A2026):
+//! The start is only where the search begins: the motion found is one of the equation alone, stable
+//! or not. Motions that are known already are kept away from by deflation (P. E. Farrell, A.
+//! Birkisson, S. W. Funke, SIAM J. Sci. Comput. 37, 2015, A2026):
 //!
 //! ```text
 //! Newton on  eta(y) (M(y) - y),  eta = product of (1 + 1/|y - y_known|^2):  the step of Newton's method over 1 - (grad eta . step)/eta
@@ -55,7 +56,9 @@ impl PeriodicMotion {
 
     /// Whether neighbouring motions come closer.
     pub fn attracts(&self) -> bool {
-        self.multipliers.iter().all(|value| value.0.hypot(value.1) < 1.0)
+        self.multipliers
+            .iter()
+            .all(|value| value.0.hypot(value.1) < 1.0)
     }
 
     /// The amplitude of a harmonic of the period, `sqrt(c^2 + s^2)` of its cosine and sine.
@@ -74,7 +77,8 @@ impl PeriodicMotion {
     }
 }
 
-/// The periodic motion near a start, position and velocity at `t = 0`; `size` is about how large it is.
+/// The periodic motion near a start, position and velocity at `t = 0`; `size` is about how large it
+/// is.
 ///
 /// # Errors
 /// None was found near there, or the motion cannot be followed.
@@ -110,7 +114,8 @@ pub fn another_periodic_motion(
 ) -> Result<PeriodicMotion, NoPeriodicMotion> {
     const STEPS: usize = 30;
     const SETTLED: f64 = 1e-11;
-    /// The finite differences of the map, beside the size of the motion: far above the error of integration.
+    /// The finite differences of the map, beside the size of the motion: far above the error of
+    /// integration.
     const DIFFERENCE: f64 = 1e-5;
     let rate = TAU / period;
     let scale = [size, size * rate];
@@ -137,7 +142,8 @@ pub fn another_periodic_motion(
         let of_one = |[x, v]: &[f64; 2]| {
             let apart = Vector2::new((place[0] - x) / scale[0], (place[1] - v) / scale[1]);
             let square = apart.norm_squared();
-            -2.0 * (apart[0] * step[0] / scale[0] + apart[1] * step[1] / scale[1]) / (square * (square + 1.0))
+            -2.0 * (apart[0] * step[0] / scale[0] + apart[1] * step[1] / scale[1])
+                / (square * (square + 1.0))
         };
         known.iter().map(of_one).sum()
     };

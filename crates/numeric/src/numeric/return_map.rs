@@ -1,17 +1,21 @@
-//! True limit cycles: fixed points of the return map, in the direction of time in which they attract.
+//! True limit cycles: fixed points of the return map, in the direction of time in which they
+//! attract.
 //!
-//! Reference: A. A. Andronov, A. A. Vitt and S. E. Khaikin, *Theory of Oscillators*, Pergamon 1966, chapter V.
+//! Reference: A. A. Andronov, A. A. Vitt and S. E. Khaikin, *Theory of Oscillators*, Pergamon 1966,
+//! chapter V.
 //!
-//! A motion released at rest at `x`, right of the equilibrium, comes to its next turning point on that side at `P(x)`.
+//! A motion released at rest at `x`, right of the equilibrium, comes to its next turning point on
+//! that side at `P(x)`.
 //!
 //! ```text
 //! P(x) = x             a cycle;    P(x) - x falls there: it attracts, and rises: it repels
 //! t -> -t, x' -> -x'   turns what repels into what attracts
 //! ```
 //!
-//! A cycle that attracts is found forward in time, one that repels backward, so that errors shrink along the way however
-//! strongly it does either. Relaxation oscillations, slow but for their jumps, are stiff: an implicit method follows them where
-//! Runge-Kutta would need too many steps. Lengths are measured in an amplitude and times in the linear frequency: units do not matter.
+//! A cycle that attracts is found forward in time, one that repels backward, so that errors shrink
+//! along the way however strongly it does either. Relaxation oscillations, slow but for their
+//! jumps, are stiff: an implicit method follows them where Runge-Kutta would need too many steps.
+//! Lengths are measured in an amplitude and times in the linear frequency: units do not matter.
 
 use crate::numeric::ode::root::find_root;
 use crate::numeric::ode::{Event, Options, State, StopReason, Trajectory, integrate};
@@ -19,14 +23,16 @@ use crate::numeric::ode::{Event, Options, State, StopReason, Trajectory, integra
 /// Tolerance per step.
 const STEP_TOLERANCE: f64 = 1e-13;
 
-/// What a return may miss its start by, relative to it, where it is the accuracy of the steps that decides.
+/// What a return may miss its start by, relative to it, where it is the accuracy of the steps that
+/// decides.
 const ROUNDING: f64 = 1e-11;
 
 /// Tolerance per step of the implicit method, and what its returns may miss their start by.
 const STIFF_TOLERANCE: f64 = 1e-14;
 const STIFF_ROUNDING: f64 = 1e-8;
 
-/// Steps of one return while the neighbourhood is searched, of the first return, and of a stiff one.
+/// Steps of one return while the neighbourhood is searched, of the first return, and of a stiff
+/// one.
 const STEPS_OF_SEARCH: usize = 20_000;
 const STEPS_OF_RELAXATION: usize = 40_000;
 const STIFF_STEPS: usize = 40_000;
@@ -39,7 +45,8 @@ const STIFF_LONGEST: f64 = 1e12;
 const RATIO: f64 = 1.15;
 const RINGS: i32 = 30;
 
-/// How many amplitudes away a motion that has not turned is gone for good: no cycle that is looked for reaches as far.
+/// How many amplitudes away a motion that has not turned is gone for good: no cycle that is looked
+/// for reaches as far.
 const GONE: f64 = 1e4;
 
 /// Rings on end without a return after which a side is given up.
@@ -51,7 +58,8 @@ pub struct Equation<'a> {
     pub acceleration: &'a dyn Fn(f64, f64) -> f64,
     /// Where the motion swings about.
     pub equilibrium: f64,
-    /// About the amplitude of the cycle looked for: the one nearest to it, by ratio, is found. Positive.
+    /// About the amplitude of the cycle looked for: the one nearest to it, by ratio, is found.
+    /// Positive.
     pub amplitude: f64,
     /// About the linear frequency. Positive.
     pub frequency: f64,
@@ -62,7 +70,9 @@ pub struct Equation<'a> {
 #[non_exhaustive]
 pub enum NoLimitCycle {
     /// There seems to be none.
-    #[error("no limit cycle with a turning point between x = {from:.3e} and x = {to:.3e}, forward or backward in time")]
+    #[error(
+        "no limit cycle with a turning point between x = {from:.3e} and x = {to:.3e}, forward or backward in time"
+    )]
     NoneBetween {
         /// Lower end of the search.
         from: f64,
@@ -78,7 +88,9 @@ pub enum NoLimitCycle {
         from: f64,
     },
     /// A relaxation oscillation with parts of too different speed.
-    #[error("the true motion is too stiff to be followed in double precision, even by an implicit method")]
+    #[error(
+        "the true motion is too stiff to be followed in double precision, even by an implicit method"
+    )]
     TooStiff,
 }
 
@@ -115,8 +127,8 @@ impl LimitCycle {
     }
 }
 
-/// The limit cycle nearest to the amplitude of `equation`; one that attracts, or that repels, where `attracts` says so and
-/// there is one.
+/// The limit cycle nearest to the amplitude of `equation`; one that attracts, or that repels, where
+/// `attracts` says so and there is one.
 ///
 /// # Errors
 /// None within a factor of sixty.
@@ -136,7 +148,10 @@ impl LimitCycle {
 /// assert!((cycle.period() - 6.663_286_859_3).abs() < 1e-8);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn nearest_limit_cycle(equation: &Equation, attracts: Option<bool>) -> Result<LimitCycle, NoLimitCycle> {
+pub fn nearest_limit_cycle(
+    equation: &Equation,
+    attracts: Option<bool>,
+) -> Result<LimitCycle, NoLimitCycle> {
     let directions: &[&[bool]] = match attracts {
         Some(true) => &[&[true], &[false]],
         Some(false) => &[&[false], &[true]],
@@ -177,7 +192,8 @@ pub fn nearest_limit_cycle(equation: &Equation, attracts: Option<bool>) -> Resul
     })
 }
 
-/// Where the attraction is strong, as that of a relaxation oscillation, two returns are on the cycle to the last digit.
+/// Where the attraction is strong, as that of a relaxation oscillation, two returns are on the
+/// cycle to the last digit.
 fn at_once(equation: &Equation, attracts: bool) -> Result<Option<LimitCycle>, NoReturn> {
     let explicit = returns(ROUNDING, equation, attracts, &|start| {
         swing(equation, attracts, start, STEPS_OF_RELAXATION)
@@ -216,13 +232,18 @@ fn by_rings(equation: &Equation, directions: &[bool]) -> Option<LimitCycle> {
         let path = swing(equation, attracts, start, STEPS_OF_SEARCH);
         path.map_or(f64::NAN, |path| path.end().x - start)
     };
-    // The growth at the inner and at the outer end of what was looked at, for each direction of time.
-    let mut ends: Vec<[f64; 2]> = directions.iter().map(|&attracts| [growth(attracts, 1.0); 2]).collect();
+    // The growth at the inner and at the outer end of what was looked at, for each direction of
+    // time.
+    let mut ends: Vec<[f64; 2]> = directions
+        .iter()
+        .map(|&attracts| [growth(attracts, 1.0); 2])
+        .collect();
     let mut lost = vec![[0; 2]; directions.len()];
     for ring in 1..=RINGS {
         for ((&attracts, ends), lost) in directions.iter().zip(&mut ends).zip(&mut lost) {
             for (side, sign) in [(0, -1), (1, 1)] {
-                // Where motions do not come back from several rings on end, they do not from beyond.
+                // Where motions do not come back from several rings on end, they do not from
+                // beyond.
                 if lost[side] == LOST_RINGS {
                     continue;
                 }
@@ -230,7 +251,11 @@ fn by_rings(equation: &Equation, directions: &[bool]) -> Option<LimitCycle> {
                 let (before, after) = (ends[side], growth(attracts, place));
                 ends[side] = after;
                 lost[side] = if after.is_nan() { lost[side] + 1 } else { 0 };
-                let (inner, outer) = if side == 0 { (after, before) } else { (before, after) };
+                let (inner, outer) = if side == 0 {
+                    (after, before)
+                } else {
+                    (before, after)
+                };
                 if !(inner > 0.0 && outer <= 0.0) {
                     continue;
                 }
@@ -263,8 +288,14 @@ enum NoReturn {
     TooManySteps,
 }
 
-/// From rest at `start` amplitudes to the next turning point on the same side, forward in time or backward.
-fn swing(equation: &Equation, forward: bool, start: f64, maximum_steps: usize) -> Result<Trajectory, NoReturn> {
+/// From rest at `start` amplitudes to the next turning point on the same side, forward in time or
+/// backward.
+fn swing(
+    equation: &Equation,
+    forward: bool,
+    start: f64,
+    maximum_steps: usize,
+) -> Result<Trajectory, NoReturn> {
     let options = Options {
         maximum_steps,
         ..Options::with_tolerance(STEP_TOLERANCE)
@@ -276,7 +307,8 @@ fn swing(equation: &Equation, forward: bool, start: f64, maximum_steps: usize) -
 fn stiff_swing(equation: &Equation, forward: bool, start: f64) -> Result<Trajectory, NoReturn> {
     let options = Options {
         maximum_steps: STIFF_STEPS,
-        // Between its jumps a relaxation oscillation moves at a small fraction of its largest speed.
+        // Between its jumps a relaxation oscillation moves at a small fraction of its largest
+        // speed.
         absolute_tolerance: 1e-4 * STIFF_TOLERANCE,
         stiff: true,
         ..Options::with_tolerance(STIFF_TOLERANCE)
@@ -299,20 +331,28 @@ fn follow(
     } = equation;
     let speed = amplitude * frequency * if forward { 1.0 } else { -1.0 };
     let unit = amplitude * frequency * frequency;
-    let scaled = |_: f64, x: f64, v: f64| acceleration(equilibrium + amplitude * x, speed * v) / unit;
+    let scaled =
+        |_: f64, x: f64, v: f64| acceleration(equilibrium + amplitude * x, speed * v) / unit;
     let state = State {
         t: 0.0,
         x: start,
         v: 0.0,
     };
     let turning = Event::stop(|_, _, v| v).falling();
-    let path = integrate(scaled, state, longest, &[turning], options).map_err(|_| NoReturn::Away)?;
+    let path =
+        integrate(scaled, state, longest, &[turning], options).map_err(|_| NoReturn::Away)?;
     match path.stop_reason() {
-        // A cycle goes around the equilibrium: what turns back on one side of it is rounding, as at mu = 1e30.
-        StopReason::Event { .. } if path.end().x > 0.0 && path.knots().any(|knot| knot.x < 0.0) => Ok(path),
+        // A cycle goes around the equilibrium: what turns back on one side of it is rounding, as at
+        // mu = 1e30.
+        StopReason::Event { .. } if path.end().x > 0.0 && path.knots().any(|knot| knot.x < 0.0) => {
+            Ok(path)
+        }
         StopReason::Event { .. } if options.stiff => Err(NoReturn::TooManySteps),
-        // Damping that grows with the distance makes the steps of a motion that runs away ever shorter.
-        StopReason::MaximumSteps { .. } | StopReason::StepTooSmall { .. } | StopReason::NonFinite { .. }
+        // Damping that grows with the distance makes the steps of a motion that runs away ever
+        // shorter.
+        StopReason::MaximumSteps { .. }
+        | StopReason::StepTooSmall { .. }
+        | StopReason::NonFinite { .. }
             if path.end().x.abs() > GONE =>
         {
             Err(NoReturn::Escapes)
@@ -341,8 +381,9 @@ mod tests {
         found(&move |x, v| mu * (1.0 - x * x) * v - x, 2.0)
     }
 
-    /// The period of van der Pol's equation by its Taylor series, which shares nothing with Runge-Kutta: from passage to
-    /// passage through x = 0. With u = 1 - x^2 and v = x', Cauchy products give `v_n` and `x_n`.
+    /// The period of van der Pol's equation by its Taylor series, which shares nothing with
+    /// Runge-Kutta: from passage to passage through x = 0. With u = 1 - x^2 and v = x', Cauchy
+    /// products give `v_n` and `x_n`.
     fn period_by_taylor(mu: f64, tolerance: f64) -> f64 {
         const ORDER: usize = 30;
         let series = |x0: f64, v0: f64| {
@@ -362,8 +403,12 @@ mod tests {
         let mut passages: Vec<f64> = vec![];
         while passages.len() < 12 {
             let (x, v) = series(state.0, state.1);
-            let step = |coefficients: &[f64], k: usize| (tolerance / coefficients[k].abs()).powf(1.0 / k as f64);
-            let h = [ORDER - 1, ORDER].into_iter().flat_map(|k| [step(&x, k), step(&v, k)]);
+            let step = |coefficients: &[f64], k: usize| {
+                (tolerance / coefficients[k].abs()).powf(1.0 / k as f64)
+            };
+            let h = [ORDER - 1, ORDER]
+                .into_iter()
+                .flat_map(|k| [step(&x, k), step(&v, k)]);
             let h = 0.5 * h.fold(1.0, f64::min);
             let next = (at(&x, h), at(&v, h));
             if state.0 < 0.0 && next.0 >= 0.0 {
@@ -379,15 +424,22 @@ mod tests {
         for mu in [0.5, 1.0, 3.0, 10.0, 20.0] {
             let [coarse, fine] = [1e-12, 1e-16].map(|tolerance| period_by_taylor(mu, tolerance));
             let period = van_der_pol(mu).period();
-            assert!((coarse / fine - 1.0).abs() < 1e-10, "mu = {mu}: {coarse} {fine}");
-            assert!((period / fine - 1.0).abs() < 1e-10, "mu = {mu}: {period} {fine}");
+            assert!(
+                (coarse / fine - 1.0).abs() < 1e-10,
+                "mu = {mu}: {coarse} {fine}"
+            );
+            assert!(
+                (period / fine - 1.0).abs() < 1e-10,
+                "mu = {mu}: {period} {fine}"
+            );
         }
     }
 
     #[test]
     fn relaxation_oscillations_follow_their_asymptotics() {
-        // T = (3 - 2 log 2) mu + 3 alpha mu^(-1/3) + ..., alpha = 2.338107 the first zero of Ai(-x): J. Grasman, *Asymptotic
-        // Methods for Relaxation Oscillations and Applications*, Springer 1987. The next term is negative.
+        // T = (3 - 2 log 2) mu + 3 alpha mu^(-1/3) + ..., alpha = 2.338107 the first zero of
+        // Ai(-x): J. Grasman, *Asymptotic Methods for Relaxation Oscillations and Applications*,
+        // Springer 1987. The next term is negative.
         let slow = 3.0 - 2.0 * 2.0_f64.ln();
         let rest = |mu: f64| (van_der_pol(mu).period() - slow * mu) * mu.cbrt() / (3.0 * 2.338_107);
         let [at_10, at_50, at_200] = [10.0, 50.0, 200.0].map(rest);
@@ -399,8 +451,9 @@ mod tests {
 
     #[test]
     fn stiff_cycles_have_the_period_of_dorodnitsyn() {
-        // ... - (2/3) log(mu)/mu - 1.3246/mu + O(mu^(-4/3)): A. A. Dorodnitsyn, Prikl. Mat. Mekh. 11 (1947) 313-328, with the last
-        // coefficient of M. Urabe, IEEE Trans. Circuit Theory CT-7 (1960) 382-386.
+        // ... - (2/3) log(mu)/mu - 1.3246/mu + O(mu^(-4/3)): A. A. Dorodnitsyn, Prikl. Mat. Mekh.
+        // 11 (1947) 313-328, with the last coefficient of M. Urabe, IEEE Trans. Circuit Theory CT-7
+        // (1960) 382-386.
         let asymptotic = |mu: f64| {
             (3.0 - 2.0 * 2.0_f64.ln()) * mu + 3.0 * 2.338_107_410_459_767 / mu.cbrt()
                 - 2.0 / 3.0 * mu.ln() / mu
@@ -417,12 +470,19 @@ mod tests {
             assert_eq!(cycle.attracts(), mu > 0.0);
             // Turning points: 2 + alpha mu^(-4/3)/3 + ...
             let turning = 2.0 + 2.338_107 * next / 3.0;
-            assert!((cycle.at(0.0).0 - turning).abs() < next, "{}", cycle.at(0.0).0);
+            assert!(
+                (cycle.at(0.0).0 - turning).abs() < next,
+                "{}",
+                cycle.at(0.0).0
+            );
             // Half a period later the mirror image.
             for k in 0..50 {
                 let t = period * f64::from(k) / 50.0;
                 let (there, opposite) = (cycle.at(t).0, cycle.at(t + 0.5 * period).0);
-                assert!((there + opposite).abs() < 1e-5, "{mu} {t}: {there} {opposite}");
+                assert!(
+                    (there + opposite).abs() < 1e-5,
+                    "{mu} {t}: {there} {opposite}"
+                );
             }
         }
     }
@@ -458,7 +518,8 @@ mod tests {
                 amplitude: 2.0,
                 frequency: 1.0,
             };
-            let path = stiff_swing(&equation, true, 1.0).and_then(|path| stiff_swing(&equation, true, path.end().x));
+            let path = stiff_swing(&equation, true, 1.0)
+                .and_then(|path| stiff_swing(&equation, true, path.end().x));
             let Ok(path) = path else { panic!("no return") };
             let (implicit, explicit) = (cycle(&equation, true, path), van_der_pol(mu));
             assert!((implicit.period() / explicit.period() - 1.0).abs() < 1e-8);
@@ -527,7 +588,8 @@ mod tests {
 
     #[test]
     fn of_two_cycles_the_nearest() {
-        // x' (1 - 3 x^2 + x^4): to first order 1 - 3 a^2/4 + a^4/8 = 0, a^2 = 2 and 4; the outer one attracts for eps > 0.
+        // x' (1 - 3 x^2 + x^4): to first order 1 - 3 a^2/4 + a^4/8 = 0, a^2 = 2 and 4; the outer
+        // one attracts for eps > 0.
         let [inner, outer] = [2.0_f64.sqrt(), 2.0];
         for eps in [0.001, -0.001] {
             let acceleration = move |x: f64, v: f64| -eps * (1.0 - 3.0 * x * x + x.powi(4)) * v - x;
@@ -555,8 +617,12 @@ mod tests {
             };
             nearest_limit_cycle(&equation, None).err()
         };
-        assert!(matches!(search(&damped), Some(NoLimitCycle::NoneBetween { .. })));
-        // Beyond its separatrix at 0.45 a soft spring throws the motion out, damped or not: x' = 50 x far away.
+        assert!(matches!(
+            search(&damped),
+            Some(NoLimitCycle::NoneBetween { .. })
+        ));
+        // Beyond its separatrix at 0.45 a soft spring throws the motion out, damped or not: x' = 50
+        // x far away.
         for (mu, cubic) in [(0.1, -5.0), (0.1, -0.3), (1.0, -20.0), (1e-3, -1.0)] {
             let soft = move |x: f64, v: f64| mu * (1.0 - x * x) * v - x - cubic * x.powi(3);
             let found = search(&soft);

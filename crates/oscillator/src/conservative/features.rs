@@ -1,8 +1,10 @@
-//! Where a force may turn fast: corners, steep walls and narrow bumps, found from the structure of its expression.
+//! Where a force may turn fast: corners, steep walls and narrow bumps, found from the structure of
+//! its expression.
 //!
-//! A grid of points, however fine, misses a bump narrower than itself: `x - 1e5*(x + 1)*exp(-1e4*(x + 1)^2)` looks like `x`.
-//! The expression knows better. With `u` the argument of a function or the base of a power, the force may turn fast only
-//! where `u` does something special:
+//! A grid of points, however fine, misses a bump narrower than itself:
+//! `x - 1e5*(x + 1)*exp(-1e4*(x + 1)^2)` looks like `x`. The expression knows better. With `u` the
+//! argument of a function or the base of a power, the force may turn fast only where `u` does
+//! something special:
 //!
 //! ```text
 //! H(u), abs(u), sgn(u), max(u, v), min(u, v)    u = 0, u - v = 0                 a corner
@@ -11,8 +13,9 @@
 //! exp(u), tanh(u), sin(u), ...                  u = 0, u' = 0                    width 1/|u'|, sqrt(2/|u''|)
 //! ```
 //!
-//! The zeros are found from the inside out: the places of the arguments of `u` are points of the grid on which the zeros of `u`
-//! are sought, and polynomials are taken apart by their derivatives, so that none of their zeros can slip through.
+//! The zeros are found from the inside out: the places of the arguments of `u` are points of the
+//! grid on which the zeros of `u` are sought, and polynomials are taken apart by their derivatives,
+//! so that none of their zeros can slip through.
 
 use std::collections::BTreeMap;
 
@@ -32,7 +35,8 @@ pub struct Feature {
     pub place: f64,
     /// Over what distance the force may turn; zero at a corner, a jump or a pole.
     pub width: f64,
-    /// Whether it is a pole, a root or a logarithm: the force turns fast beside it as well, the faster the closer.
+    /// Whether it is a pole, a root or a logarithm: the force turns fast beside it as well, the
+    /// faster the closer.
     pub singular: bool,
 }
 
@@ -78,8 +82,8 @@ const HIGH_POWER: f64 = 8.0;
 const GROWTH: f64 = 4.0;
 
 impl Features {
-    /// The structure of `force` as a function of `coordinate`, with numbers for every other symbol; symbols without a number,
-    /// such as the velocity, are zero.
+    /// The structure of `force` as a function of `coordinate`, with numbers for every other symbol;
+    /// symbols without a number, such as the velocity, are zero.
     pub fn new(force: &Expr, coordinate: Symbol, numbers: &BTreeMap<Symbol, f64>) -> Self {
         let mut names = force.symbols();
         names.insert(coordinate);
@@ -109,7 +113,9 @@ impl Features {
 
     /// Whether some part of it goes up and down again and again, as a sine does.
     pub fn waves(&self) -> bool {
-        self.parts.iter().any(|part| part.kind == Kind::Scale { waves: true })
+        self.parts
+            .iter()
+            .any(|part| part.kind == Kind::Scale { waves: true })
     }
 
     /// The places between `from` and `to`, and a little beyond, in order.
@@ -148,8 +154,9 @@ impl Features {
         found
     }
 
-    /// Where to cut the interval from `from` to `to` so that the force is smooth on each piece and turns no faster than the
-    /// piece is long: corners, and steps of growing length on both sides of a narrow place. Without the ends, in order.
+    /// Where to cut the interval from `from` to `to` so that the force is smooth on each piece and
+    /// turns no faster than the piece is long: corners, and steps of growing length on both sides
+    /// of a narrow place. Without the ends, in order.
     pub fn cuts(&self, from: f64, to: f64) -> Vec<f64> {
         let (low, high) = (from.min(to), from.max(to));
         let mut cuts = graded(&self.between(low, high), low, high);
@@ -166,7 +173,11 @@ fn graded(features: &[Feature], low: f64, high: f64) -> Vec<f64> {
     for feature in features {
         // Beside a singular place the force is as narrow as that is far.
         let outside = f64::max(low - feature.place, feature.place - high).max(0.0);
-        let width = if feature.singular { 0.5 * outside } else { feature.width };
+        let width = if feature.singular {
+            0.5 * outside
+        } else {
+            feature.width
+        };
         // What is as wide as the interval is no feature of it.
         if width > length / 16.0 {
             continue;
@@ -184,7 +195,8 @@ fn graded(features: &[Feature], low: f64, high: f64) -> Vec<f64> {
     points
 }
 
-/// What a node adds: its argument, where that contains the coordinate and the node can break or turn fast.
+/// What a node adds: its argument, where that contains the coordinate and the node can break or
+/// turn fast.
 fn part(expr: &Expr, coordinate: Symbol) -> Option<Part> {
     let (kind, argument) = match expr.node() {
         Node::Power(base, exponent) if exponent.contains(coordinate) => {
@@ -201,7 +213,9 @@ fn part(expr: &Expr, coordinate: Symbol) -> Option<Part> {
             (Kind::Power(size), base.clone())
         }
         Node::Function(function, arguments) => {
-            use Function::{Absolute, Acos, Asin, Cos, Log, Maximum, Minimum, Sign, Sin, Step, Tan};
+            use Function::{
+                Absolute, Acos, Asin, Cos, Log, Maximum, Minimum, Sign, Sin, Step, Tan,
+            };
             let kind = match function {
                 Absolute | Sign | Step | Maximum | Minimum => Kind::Corner,
                 Asin | Acos => Kind::Inverse,
@@ -299,14 +313,15 @@ impl Part {
     }
 
     fn width(&self, place: f64) -> f64 {
-        let [value, slope, curvature] =
-            [&self.argument, &self.slope, &self.curvature].map(|function| function.call(&[place]).abs());
+        let [value, slope, curvature] = [&self.argument, &self.slope, &self.curvature]
+            .map(|function| function.call(&[place]).abs());
         let change = match self.kind {
             Kind::Corner | Kind::Inverse => 0.0,
             Kind::Scale { .. } => 1.0,
             Kind::Power(exponent) => value / exponent,
         };
-        // The smaller of the distances over which the linear and the quadratic part change that much.
+        // The smaller of the distances over which the linear and the quadratic part change that
+        // much.
         let width = f64::min(change / slope, (2.0 * change / curvature).sqrt());
         match self.kind {
             Kind::Corner | Kind::Inverse => 0.0,
@@ -357,12 +372,17 @@ mod tests {
     use crate::expr::parse_expression;
 
     fn features(text: &str) -> Features {
-        Features::new(&parse_expression(text).unwrap(), "x".into(), &BTreeMap::new())
+        Features::new(
+            &parse_expression(text).unwrap(),
+            "x".into(),
+            &BTreeMap::new(),
+        )
     }
 
     fn has(found: &[Feature], place: f64, width: f64) -> bool {
         found.iter().any(|feature| {
-            (feature.place - place).abs() < 1e-12 * (1.0 + place.abs()) && (feature.width - width).abs() <= 1e-6 * width
+            (feature.place - place).abs() < 1e-12 * (1.0 + place.abs())
+                && (feature.width - width).abs() <= 1e-6 * width
         })
     }
 
@@ -378,14 +398,22 @@ mod tests {
             ("x + (1 - x^2)^10000", 0.0, 1e-2),
             ("x + asin(sin(x))", 0.5 * std::f64::consts::PI, 0.0),
             // Two levels deep: the bump is where the sine is 0.6, and only there.
-            ("x + exp(-1e12*(sin(x) - 0.6)^2)", 0.6_f64.asin(), 1e-6 / 0.8),
+            (
+                "x + exp(-1e12*(sin(x) - 0.6)^2)",
+                0.6_f64.asin(),
+                1e-6 / 0.8,
+            ),
             ("x + abs(sin(500*x))", std::f64::consts::PI / 5.0, 0.0),
             (
                 "x + H(exp(-1e6*(x - 0.2)^2) - 1/2)",
                 0.2 + 2.0_f64.ln().sqrt() * 1e-3,
                 0.0,
             ),
-            ("x + abs((x - 0.1)*(x - 0.1000001)*(x + 3))", 0.100_000_1, 0.0),
+            (
+                "x + abs((x - 0.1)*(x - 0.1000001)*(x + 3))",
+                0.100_000_1,
+                0.0,
+            ),
         ];
         for (text, place, width) in cases {
             let found = features(text).between(-2.0, 2.0);

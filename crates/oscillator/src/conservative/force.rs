@@ -1,7 +1,9 @@
-//! A force at given numbers, measured from its equilibrium: what every law that is solved by numbers evaluates.
+//! A force at given numbers, measured from its equilibrium: what every law that is solved by
+//! numbers evaluates.
 //!
-//! Near rest a force such as `exp(x) - 1`, or any force about an equilibrium that is not zero, is a small difference of large
-//! numbers. Where rounding would show, its Taylor polynomial stands in for it, whose coefficients are exact:
+//! Near rest a force such as `exp(x) - 1`, or any force about an equilibrium that is not zero, is a
+//! small difference of large numbers. Where rounding would show, its Taylor polynomial stands in
+//! for it, whose coefficients are exact:
 //!
 //! ```text
 //! f(x_e + y) = f'(x_e) y + f''(x_e) y^2/2 + ...,   |y| <= r,   r so small that the last terms kept are below rounding
@@ -24,8 +26,8 @@ use crate::symbol::Symbol;
 /// The degree of the polynomial near rest of a force whose leading term is linear.
 const DEGREE: u32 = 10;
 
-/// The degree for a force that begins with a higher power, as `sin(x) - x` does: a difference that keeps fewer digits near rest
-/// needs its polynomial farther out.
+/// The degree for a force that begins with a higher power, as `sin(x) - x` does: a difference that
+/// keeps fewer digits near rest needs its polynomial farther out.
 const DEGREE_OF_HIGHER_POWERS: u32 = 32;
 
 /// A force as a function of the distance from its equilibrium.
@@ -52,7 +54,8 @@ struct AtNumbers {
     poles: RefCell<BTreeMap<u64, bool>>,
 }
 
-/// The Taylor polynomial of a force about its equilibrium, and the distance up to which it is as good as the force.
+/// The Taylor polynomial of a force about its equilibrium, and the distance up to which it is as
+/// good as the force.
 #[derive(Clone, Debug)]
 pub struct NearRest {
     coefficients: Vec<f64>,
@@ -60,9 +63,15 @@ pub struct NearRest {
 }
 
 impl NearRest {
-    /// The force at the distance `y` from the equilibrium; `None` farther out than the polynomial reaches.
+    /// The force at the distance `y` from the equilibrium; `None` farther out than the polynomial
+    /// reaches.
     pub fn value(&self, y: f64) -> Option<f64> {
-        let sum = || self.coefficients.iter().rev().fold(0.0, |sum, c| sum * y + c);
+        let sum = || {
+            self.coefficients
+                .iter()
+                .rev()
+                .fold(0.0, |sum, c| sum * y + c)
+        };
         (y.abs() <= self.radius).then(sum)
     }
 
@@ -74,7 +83,8 @@ impl NearRest {
 }
 
 impl Force {
-    /// `force` about `equilibrium` at these numbers, for motions of about this amplitude; `None` where a symbol has no number.
+    /// `force` about `equilibrium` at these numbers, for motions of about this amplitude; `None`
+    /// where a symbol has no number.
     pub fn new(
         force: &Expr,
         coordinate: Symbol,
@@ -82,14 +92,20 @@ impl Force {
         numbers: &BTreeMap<Symbol, f64>,
         amplitude: f64,
     ) -> Option<Self> {
-        let names: Vec<Symbol> = std::iter::once(coordinate).chain(numbers.keys().copied()).collect();
+        let names: Vec<Symbol> = std::iter::once(coordinate)
+            .chain(numbers.keys().copied())
+            .collect();
         let place = equilibrium.evaluate(numbers).ok()?;
         let slope = force.differentiate(coordinate).ok();
         let of = AtNumbers {
             value: CompiledFunction::new(force, &names).ok()?,
             slope: slope.and_then(|slope| CompiledFunction::new(&slope, &names).ok()),
             // One row of arguments for all calls: only its first entry, the position, changes.
-            arguments: RefCell::new(std::iter::once(0.0).chain(numbers.values().copied()).collect()),
+            arguments: RefCell::new(
+                std::iter::once(0.0)
+                    .chain(numbers.values().copied())
+                    .collect(),
+            ),
             coefficients: OnceCell::new(),
             equilibrium: (equilibrium.clone(), place),
             force: force.clone(),
@@ -101,7 +117,8 @@ impl Force {
         Some(Self::of_amplitude(Rc::new(of), amplitude))
     }
 
-    /// The same force for motions of about another amplitude: what was found out about it is not found out again.
+    /// The same force for motions of about another amplitude: what was found out about it is not
+    /// found out again.
     #[must_use]
     pub fn with_amplitude(&self, amplitude: f64) -> Self {
         Self::of_amplitude(Rc::clone(&self.of), amplitude)
@@ -133,21 +150,26 @@ impl Force {
         near.unwrap_or_else(|| self.call(&self.of.value, y))
     }
 
-    /// The polynomial that stands in for the force near rest; `None` where the force itself has all its digits there.
+    /// The polynomial that stands in for the force near rest; `None` where the force itself has all
+    /// its digits there.
     pub fn polynomial_near_rest(&self) -> Option<&NearRest> {
         self.near.as_ref()
     }
 
     /// Its derivative there, jumps left out; NaN where it has none.
     pub fn slope(&self, y: f64) -> f64 {
-        match (self.near.as_ref().and_then(|near| near.slope(y)), &self.of.slope) {
+        match (
+            self.near.as_ref().and_then(|near| near.slope(y)),
+            &self.of.slope,
+        ) {
             (Some(slope), _) => slope,
             (None, Some(slope)) => self.call(slope, y),
             (None, None) => f64::NAN,
         }
     }
 
-    /// Whether rounding leaves the force a digit at the distance `y`: none where it is the difference of numbers that agree to all of theirs.
+    /// Whether rounding leaves the force a digit at the distance `y`: none where it is the
+    /// difference of numbers that agree to all of theirs.
     pub(super) fn has_digits(&self, y: f64) -> bool {
         let there = |symbol: Symbol| match symbol == self.of.coordinate {
             true => Some((self.equilibrium() + y, 0.0)),
@@ -157,7 +179,8 @@ impl Force {
         found.is_some_and(|(value, error)| error <= 0.1 * value.abs())
     }
 
-    /// The work against the force from one distance to another, with a bound of its error; `None` where it has no value between.
+    /// The work against the force from one distance to another, with a bound of its error; `None`
+    /// where it has no value between.
     pub fn work(&self, from: f64, to: f64) -> Option<(f64, f64)> {
         const TOLERANCE: f64 = 1e-14;
         let mut ends = self.cuts(from, to);
@@ -168,7 +191,9 @@ impl Force {
             let piece = match integrate_smooth(|y| self.at(y), pair[0], pair[1], TOLERANCE) {
                 Ok(piece) => piece,
                 Err(QuadratureError::NotConverged {
-                    value, error_estimate, ..
+                    value,
+                    error_estimate,
+                    ..
                 }) if error_estimate < 1e-9 * value.abs() => (value, error_estimate),
                 Err(_) => return None,
             };
@@ -178,7 +203,8 @@ impl Force {
         Some((if from <= to { sum } else { -sum }, error))
     }
 
-    /// How often the force or its slope was evaluated so far: a measure of work that is the same on every machine.
+    /// How often the force or its slope was evaluated so far: a measure of work that is the same on
+    /// every machine.
     pub fn evaluations(&self) -> u64 {
         self.evaluations.get()
     }
@@ -197,7 +223,8 @@ impl Force {
         cuts.into_iter().map(|place| place - at).collect()
     }
 
-    /// Whether some part of it goes up and down again and again, so that many waves may lie between two cuts.
+    /// Whether some part of it goes up and down again and again, so that many waves may lie between
+    /// two cuts.
     pub fn waves(&self) -> bool {
         self.of.features().waves()
     }
@@ -206,9 +233,11 @@ impl Force {
     fn near_rest(&self, amplitude: f64) -> Option<NearRest> {
         /// Relative errors below this are no loss.
         const HARMLESS: f64 = 2e-14;
-        /// How many amplitudes the polynomial may reach: farther than the search for the edge of a well.
+        /// How many amplitudes the polynomial may reach: farther than the search for the edge of a
+        /// well.
         const FARTHEST: f64 = 1e12;
-        let (coordinate, numbers, place) = (self.of.coordinate, &self.of.numbers, self.equilibrium());
+        let (coordinate, numbers, place) =
+            (self.of.coordinate, &self.of.numbers, self.equilibrium());
         let cancels = [0.31 * amplitude, -0.7 * amplitude].into_iter().any(|y| {
             let there = |symbol: Symbol| match symbol == coordinate {
                 // The sum of equilibrium and distance is rounded itself.
@@ -224,18 +253,32 @@ impl Force {
         if !cancels && at_rest.is_some() {
             return None;
         }
-        let coefficients = self.of.coefficients.get_or_init(|| self.of.expanded()).as_ref()?;
-        let size = |k: usize, radius: f64| coefficients.get(k).map_or(0.0, |c| c.abs() * radius.powi(k as i32));
+        let coefficients = self
+            .of
+            .coefficients
+            .get_or_init(|| self.of.expanded())
+            .as_ref()?;
+        let size = |k: usize, radius: f64| {
+            coefficients
+                .get(k)
+                .map_or(0.0, |c| c.abs() * radius.powi(k as i32))
+        };
         let first = coefficients.iter().position(|c| *c != 0.0)?;
         let good = |radius: f64| {
-            let leading = (first..first + 3).map(|k| size(k, radius)).fold(0.0, f64::max);
+            let leading = (first..first + 3)
+                .map(|k| size(k, radius))
+                .fold(0.0, f64::max);
             let last = coefficients.len() - 1;
             leading.is_finite() && (last - 2..=last).all(|k| size(k, radius) <= 1e-17 * leading)
         };
-        let radii = |from: f64, factor: f64| std::iter::successors(Some(from), move |radius| Some(factor * radius));
-        // A narrow place close to rest is not seen on an interval far wider: every scale is looked at.
+        let radii = |from: f64, factor: f64| {
+            std::iter::successors(Some(from), move |radius| Some(factor * radius))
+        };
+        // A narrow place close to rest is not seen on an interval far wider: every scale is looked
+        // at.
         let clear = |radius: f64| {
-            let mut scales = radii(radius, 1.0 / 64.0).take_while(|&scale| scale >= 1e-2 * amplitude.abs().min(radius));
+            let mut scales = radii(radius, 1.0 / 64.0)
+                .take_while(|&scale| scale >= 1e-2 * amplitude.abs().min(radius));
             scales.all(|scale| self.is_clear(scale, 1e-12 * amplitude.abs()))
         };
         let mut radii = radii(FARTHEST * amplitude.abs(), 0.5).take(240);
@@ -246,30 +289,39 @@ impl Force {
         })
     }
 
-    /// Whether no corner lies as close to the equilibrium as this (one at rest itself apart), and within four times the distance
-    /// nothing that turns within less than that: of what happens there, as of a bump beyond its tail, the Taylor coefficients at
-    /// rest may know nothing.
+    /// Whether no corner lies as close to the equilibrium as this (one at rest itself apart), and
+    /// within four times the distance nothing that turns within less than that: of what happens
+    /// there, as of a bump beyond its tail, the Taylor coefficients at rest may know nothing.
     fn is_clear(&self, radius: f64, at_rest: f64) -> bool {
-        let narrow = self
-            .of
-            .features()
-            .between(self.equilibrium() - 4.0 * radius, self.equilibrium() + 4.0 * radius);
+        let narrow = self.of.features().between(
+            self.equilibrium() - 4.0 * radius,
+            self.equilibrium() + 4.0 * radius,
+        );
         narrow.into_iter().all(|feature| {
             let distance = (feature.place - self.equilibrium()).abs();
-            let reach = if feature.width == 0.0 { radius } else { 4.0 * radius };
+            let reach = if feature.width == 0.0 {
+                radius
+            } else {
+                4.0 * radius
+            };
             let rounding = f64::max(at_rest, 4.0 * f64::EPSILON * self.equilibrium().abs());
             distance <= rounding || distance > reach || feature.width >= 4.0 * radius
         })
     }
 
-    /// The position (not the distance) of a place between these distances at which the force has no value, or grows so fast
-    /// towards a pole that no motion passes it; the pole of an odd force at the equilibrium itself is none.
+    /// The position (not the distance) of a place between these distances at which the force has no
+    /// value, or grows so fast towards a pole that no motion passes it; the pole of an odd force at
+    /// the equilibrium itself is none.
     pub fn gap(&self, from: f64, to: f64) -> Option<f64> {
         const SAMPLES: usize = 48;
         let (from, to) = (from.min(to), from.max(to));
         let size = from.abs().max(to.abs());
-        let defined =
-            |y: f64| self.at(y).is_finite() || [-1e-9, 1e-9].iter().all(|d| self.at(y + d * size).is_finite());
+        let defined = |y: f64| {
+            self.at(y).is_finite()
+                || [-1e-9, 1e-9]
+                    .iter()
+                    .all(|d| self.at(y + d * size).is_finite())
+        };
         let sample = |k: usize| {
             let half = 0.5 - 0.5 * (std::f64::consts::PI * (k as f64 + 0.5) / SAMPLES as f64).cos();
             from + (to - from) * half
@@ -281,7 +333,12 @@ impl Force {
         if let Some(outside) = samples.iter().copied().find(|&y| !defined(y)) {
             let inside = samples.iter().copied().filter(|&y| defined(y));
             let nearest = inside.min_by(|a, b| (a - outside).abs().total_cmp(&(b - outside).abs()));
-            let [_, outside] = bisect(defined, nearest.unwrap_or(outside), outside, Until::Halvings(60));
+            let [_, outside] = bisect(
+                defined,
+                nearest.unwrap_or(outside),
+                outside,
+                Until::Halvings(60),
+            );
             return Some(self.equilibrium() + outside);
         }
         if self.of.features().is_empty() {
@@ -295,7 +352,9 @@ impl Force {
             .into_iter()
             .map(|feature| feature.place)
             .filter(|place| (from..=to).contains(&(place - self.equilibrium())))
-            .filter(|place| (place - self.equilibrium()).abs() > 8.0 * f64::EPSILON * self.equilibrium().abs())
+            .filter(|place| {
+                (place - self.equilibrium()).abs() > 8.0 * f64::EPSILON * self.equilibrium().abs()
+            })
             .find(|&place| {
                 // At zero alone the answer depends on the size of the motion.
                 let known = self.of.poles.borrow().get(&place.to_bits()).copied();
@@ -308,7 +367,8 @@ impl Force {
             })
     }
 
-    /// What of the force is beyond double precision at the distance `y`, in words, where that is why it has no finite value there.
+    /// What of the force is beyond double precision at the distance `y`, in words, where that is
+    /// why it has no finite value there.
     pub fn overflow(&self, y: f64) -> Option<String> {
         let mut there = self.of.numbers.clone();
         there.insert(self.of.coordinate, self.equilibrium() + y);
@@ -318,8 +378,9 @@ impl Force {
         }
     }
 
-    /// Whether the force grows towards a place so fast that its potential is infinite there: as close to it as rounding lets
-    /// the force be known, like a power of the distance no weaker than its inverse, or nearly.
+    /// Whether the force grows towards a place so fast that its potential is infinite there: as
+    /// close to it as rounding lets the force be known, like a power of the distance no weaker than
+    /// its inverse, or nearly.
     pub fn is_pole(&self, place: f64, size: f64) -> bool {
         const DECADES: i32 = 13;
         const FASTER_THAN: f64 = 0.83;
@@ -339,7 +400,8 @@ impl Force {
             })
         };
         let near = (0..DECADES).map(|k| scale * 10.0_f64.powi(k - DECADES));
-        let pair = near.filter_map(|distance| Some((strength(distance)?, strength(100.0 * distance)?)));
+        let pair =
+            near.filter_map(|distance| Some((strength(distance)?, strength(100.0 * distance)?)));
         let mut pairs = pair.take(1);
         pairs
             .next()
@@ -351,12 +413,14 @@ impl AtNumbers {
     fn features(&self) -> &Features {
         self.features.get_or_init(|| {
             // The poles of the tangent are the zeros of the cosine.
-            let quotients = self
-                .force
-                .fold(|expr, children: &[Expr]| match (expr.node(), children) {
-                    (Node::Function(Function::Tan, _), [argument]) => Expr::divide(&argument.sin()?, &argument.cos()?),
-                    _ => expr.with_children(children),
-                });
+            let quotients =
+                self.force
+                    .fold(|expr, children: &[Expr]| match (expr.node(), children) {
+                        (Node::Function(Function::Tan, _), [argument]) => {
+                            Expr::divide(&argument.sin()?, &argument.cos()?)
+                        }
+                        _ => expr.with_children(children),
+                    });
             let force = quotients.as_ref().unwrap_or(&self.force);
             Features::new(force, self.coordinate, &self.numbers)
         })
@@ -387,7 +451,12 @@ impl AtNumbers {
 }
 
 /// The force at a place; `None` where it has no finite value there.
-fn value_at(force: &Expr, coordinate: Symbol, place: f64, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
+fn value_at(
+    force: &Expr,
+    coordinate: Symbol,
+    place: f64,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Option<f64> {
     let mut there = numbers.clone();
     there.insert(coordinate, place);
     force.evaluate(&there).ok()
@@ -399,7 +468,14 @@ mod tests {
 
     fn force(text: &str, equilibrium: &str, amplitude: f64) -> Force {
         let [force, equilibrium]: [Expr; 2] = [text, equilibrium].map(|text| text.parse().unwrap());
-        Force::new(&force, "x".into(), &equilibrium, &BTreeMap::new(), amplitude).unwrap()
+        Force::new(
+            &force,
+            "x".into(),
+            &equilibrium,
+            &BTreeMap::new(),
+            amplitude,
+        )
+        .unwrap()
     }
 
     #[test]
@@ -407,7 +483,9 @@ mod tests {
         type Truth = fn(f64) -> f64;
         let cases: [(&str, &str, Truth); 4] = [
             ("exp(x) - 1", "0", |y| y.exp_m1()),
-            ("exp(-x) - exp(-2*x)", "0", |y| (-2.0 * y).exp() * y.exp_m1()),
+            ("exp(-x) - exp(-2*x)", "0", |y| {
+                (-2.0 * y).exp() * y.exp_m1()
+            }),
             ("x^2 - 2", "sqrt(2)", |y| y * (y + 8.0_f64.sqrt())),
             ("1/(1 - x)^2 - 4", "1/2", |y| {
                 4.0 * (4.0 * y - 4.0 * y * y) / (1.0 - 2.0 * y).powi(2)
@@ -429,7 +507,8 @@ mod tests {
         }
     }
 
-    /// `(1 - cos y)/y = 2 sin^2(y/2)/y` and `(exp y - 1)/y - 1`, which the series alone give near rest.
+    /// `(1 - cos y)/y = 2 sin^2(y/2)/y` and `(exp y - 1)/y - 1`, which the series alone give near
+    /// rest.
     #[test]
     fn a_removable_singularity_is_filled_in() {
         let cosine = |y: f64| 2.0 * (0.5 * y).sin().powi(2) / y;
@@ -437,7 +516,12 @@ mod tests {
             let found = force("(1 - cos(x))/x", "0", amplitude);
             assert_eq!(found.at(0.0), 0.0);
             assert!((found.slope(0.0) - 0.5).abs() < 1e-15);
-            for y in [amplitude, -0.37 * amplitude, 1e-3 * amplitude, 1e-7 * amplitude] {
+            for y in [
+                amplitude,
+                -0.37 * amplitude,
+                1e-3 * amplitude,
+                1e-7 * amplitude,
+            ] {
                 let error = (found.at(y) - cosine(y)).abs() / cosine(amplitude);
                 assert!(error < 1e-13, "{y}: {error:e}");
             }
@@ -452,7 +536,9 @@ mod tests {
     #[test]
     fn poles_and_ends_are_found() {
         let gap = |text: &str, from, to| force(text, "0", 1.0).gap(from, to);
-        let near = |found: Option<f64>, place: f64| found.is_some_and(|found| (found - place).abs() < 1e-6);
+        let near = |found: Option<f64>, place: f64| {
+            found.is_some_and(|found| (found - place).abs() < 1e-6)
+        };
         assert!(near(gap("x/(1 - x)^2", -2.0, 2.0), 1.0));
         assert!(near(gap("x/(1 - 2*x + x^2)", -2.0, 2.0), 1.0));
         assert!(near(gap("x - 1/4/(1 - x)^2", -2.0, 2.0), 1.0));
@@ -464,7 +550,10 @@ mod tests {
         assert!(near(gap("x/sqrt(1 - x^2)", -1.5, 1.5).map(f64::abs), 1.0));
         assert!(near(gap("asin(x)", -1.5, 1.5).map(f64::abs), 1.0));
         // Seen from another equilibrium the place is still a place, not a distance.
-        assert!(near(force("(x - 2)/(5 - x)^2", "2", 1.0).gap(-4.0, 4.0), 5.0));
+        assert!(near(
+            force("(x - 2)/(5 - x)^2", "2", 1.0).gap(-4.0, 4.0),
+            5.0
+        ));
         assert!(near(force("log(x/2)", "2", 1.0).gap(-3.0, 3.0), 0.0));
         assert_eq!(force("(x - 2)/(5 - x)^2", "2", 1.0).gap(-2.9, 2.9), None);
         for (text, reach) in [

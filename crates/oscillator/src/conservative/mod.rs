@@ -1,15 +1,19 @@
-//! Forces of the position alone: their potential, and their projection on a harmonic, both in closed form.
+//! Forces of the position alone: their potential, and their projection on a harmonic, both in
+//! closed form.
 //!
-//! Every classical frequency formula of a conservative oscillator `x'' + f(x) = 0` is made of these two:
+//! Every classical frequency formula of a conservative oscillator `x'' + f(x) = 0` is made of these
+//! two:
 //!
 //! ```text
 //! V(x)   = int_0^x f(u) du
 //! c_k(A) = (2/pi) int_0^pi f(A cos theta) cos(k theta) dtheta
 //! ```
 //!
-//! In comes the force as an expression and the name of its coordinate; out go `V` and `c_k` as expressions, or `None` where a term
-//! has no closed form here: the methods fall back on quadrature and say so. With numbers for all symbols out goes a [`Force`], which
-//! has a value, a slope and a turning point as near to rest as one likes, and knows where it turns fast; its [well](well::Well) has ends.
+//! In comes the force as an expression and the name of its coordinate; out go `V` and `c_k` as
+//! expressions, or `None` where a term has no closed form here: the methods fall back on quadrature
+//! and say so. With numbers for all symbols out goes a [`Force`], which has a value, a slope and a
+//! turning point as near to rest as one likes, and knows where it turns fast; its
+//! [well](well::Well) has ends.
 
 pub mod features;
 pub mod force;
@@ -30,8 +34,8 @@ use crate::exact::Rational;
 use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
 
-/// Whether a force has no corners: neither `abs`, `sgn`, `max`, `min` or `H`, nor a root of something linear in the coordinate.
-/// Quadrature converges fast then, and only then.
+/// Whether a force has no corners: neither `abs`, `sgn`, `max`, `min` or `H`, nor a root of
+/// something linear in the coordinate. Quadrature converges fast then, and only then.
 ///
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
@@ -45,13 +49,19 @@ pub fn is_smooth(force: &Expr, coordinate: Symbol) -> bool {
     use crate::expr::Function::{Absolute, Maximum, Minimum, Sign, Step};
     use crate::expr::Node;
     let corners = [Absolute, Maximum, Minimum, Sign, Step];
-    if corners.into_iter().any(|function| force.contains_function(function)) {
+    if corners
+        .into_iter()
+        .any(|function| force.contains_function(function))
+    {
         return false;
     }
     let has_root = force.fold(|expr, children: &[bool]| {
         let root = match expr.node() {
             Node::Power(base, exponent) => {
-                exponent.as_number().is_some_and(|number| !number.is_integer()) && linear_in(base, coordinate).is_some()
+                exponent
+                    .as_number()
+                    .is_some_and(|number| !number.is_integer())
+                    && linear_in(base, coordinate).is_some()
             }
             _ => false,
         };
@@ -60,18 +70,22 @@ pub fn is_smooth(force: &Expr, coordinate: Symbol) -> bool {
     has_root == Ok(false)
 }
 
-/// Slope and constant of an argument `slope*x + constant`; `None` where it is not linear in `x`, or constant.
+/// Slope and constant of an argument `slope*x + constant`; `None` where it is not linear in `x`, or
+/// constant.
 pub(crate) fn linear_in(argument: &Expr, coordinate: Symbol) -> Option<(Expr, Expr)> {
     let slope = argument.differentiate(coordinate).ok()?.expand().ok()?;
     if slope.is_zero() || slope.contains(coordinate) {
         return None;
     }
-    let constant = (argument - &(&slope * &Expr::from(coordinate))).expand().ok()?;
+    let constant = (argument - &(&slope * &Expr::from(coordinate)))
+        .expand()
+        .ok()?;
     (!constant.contains(coordinate)).then_some((slope, constant))
 }
 
-/// The force without `abs`, `sgn`, `max` and `min` of shifted arguments: `abs(u) = u (2 H(u) - 1)` and so on. Those of
-/// the coordinate itself stay. Steps of what has its zeros in closed form, as `1 - x^2`, are sums of steps at these.
+/// The force without `abs`, `sgn`, `max` and `min` of shifted arguments: `abs(u) = u (2 H(u) - 1)`
+/// and so on. Those of the coordinate itself stay. Steps of what has its zeros in closed form, as
+/// `1 - x^2`, are sums of steps at these.
 pub(crate) fn with_steps(force: &Expr, coordinate: Symbol) -> Result<Expr, ExprError> {
     use crate::expr::{Function, Node};
     let step = |u: Expr| match steps_at_zeros(&u, coordinate) {
@@ -80,7 +94,8 @@ pub(crate) fn with_steps(force: &Expr, coordinate: Symbol) -> Result<Expr, ExprE
     };
     force.fold(|expr, children: &[Expr]| {
         let shifted = |u: &Expr| {
-            u.contains(coordinate) && linear_in(u, coordinate).is_none_or(|(_, constant)| !constant.is_zero())
+            u.contains(coordinate)
+                && linear_in(u, coordinate).is_none_or(|(_, constant)| !constant.is_zero())
         };
         match (expr.node(), children) {
             (Node::Function(Function::Absolute, _), [u]) if shifted(u) => {
@@ -89,10 +104,14 @@ pub(crate) fn with_steps(force: &Expr, coordinate: Symbol) -> Result<Expr, ExprE
             (Node::Function(Function::Sign, _), [u]) if shifted(u) => {
                 Ok(Expr::from(2) * step(u.clone())? - Expr::one())
             }
-            (Node::Function(Function::Maximum, _), [u, v]) if u.contains(coordinate) || v.contains(coordinate) => {
+            (Node::Function(Function::Maximum, _), [u, v])
+                if u.contains(coordinate) || v.contains(coordinate) =>
+            {
                 Ok(v + &((u - v) * step(u - v)?))
             }
-            (Node::Function(Function::Minimum, _), [u, v]) if u.contains(coordinate) || v.contains(coordinate) => {
+            (Node::Function(Function::Minimum, _), [u, v])
+                if u.contains(coordinate) || v.contains(coordinate) =>
+            {
                 Ok(u - &((u - v) * step(u - v)?))
             }
             (Node::Function(Function::Step, _), [u]) => step(u.clone()),
@@ -101,8 +120,9 @@ pub(crate) fn with_steps(force: &Expr, coordinate: Symbol) -> Result<Expr, ExprE
     })
 }
 
-/// `H(u)` as a sum of steps at the zeros of `u`, a constant and a power of the coordinate or of its size, or a quadratic in numbers: `None`
-/// for anything else, and where it is one already. Letters under a root are taken to be positive.
+/// `H(u)` as a sum of steps at the zeros of `u`, a constant and a power of the coordinate or of its
+/// size, or a quadratic in numbers: `None` for anything else, and where it is one already. Letters
+/// under a root are taken to be positive.
 fn steps_at_zeros(u: &Expr, coordinate: Symbol) -> Option<Expr> {
     use crate::expr::Function;
     use num_integer::Integer as _;
@@ -127,7 +147,8 @@ fn steps_at_zeros(u: &Expr, coordinate: Symbol) -> Option<Expr> {
         powers.push((power, coefficient));
     }
     let constant = Expr::sum(constants);
-    // Of the two signs one is that of a number, if either is: where the zeros are real the other is opposite.
+    // Of the two signs one is that of a number, if either is: where the zeros are real the other is
+    // opposite.
     let inside_and_outside = |inside: Expr, within: &Expr, beyond: &Expr| {
         let [within, beyond] = match (within.as_number(), beyond.as_number()) {
             (None, Some(_)) => [step(&-beyond)?, step(beyond)?],
@@ -140,7 +161,9 @@ fn steps_at_zeros(u: &Expr, coordinate: Symbol) -> Option<Expr> {
             return None;
         }
         let root = Expr::number(power.exponent.recip());
-        let ratio = (-&Expr::divide(&constant, coefficient).ok()?).expand().ok()?;
+        let ratio = (-&Expr::divide(&constant, coefficient).ok()?)
+            .expand()
+            .ok()?;
         if power.odd {
             // Monotonic: of a negative number the root is that of its size.
             let (negative, size) = match ratio.has_leading_minus() {
@@ -219,9 +242,13 @@ pub(crate) struct SignedPower {
     pub odd: bool,
 }
 
-/// Takes the factors that are powers of the coordinate, its size and its sign out of `factors`; the slopes of `abs(k*x)`
-/// go into `coefficient`.
-pub(crate) fn take_powers(factors: &mut Vec<Expr>, coefficient: &mut Expr, coordinate: Symbol) -> Option<SignedPower> {
+/// Takes the factors that are powers of the coordinate, its size and its sign out of `factors`; the
+/// slopes of `abs(k*x)` go into `coefficient`.
+pub(crate) fn take_powers(
+    factors: &mut Vec<Expr>,
+    coefficient: &mut Expr,
+    coordinate: Symbol,
+) -> Option<SignedPower> {
     use crate::expr::{Function, Node};
     use num_integer::Integer as _;
     use num_traits::Zero;
@@ -254,7 +281,9 @@ pub(crate) fn take_powers(factors: &mut Vec<Expr>, coefficient: &mut Expr, coord
                     let size = Expr::function(Function::Absolute, vec![slope]).ok()?;
                     *coefficient = &*coefficient * &Expr::power(&size, &exponent).ok()?;
                     power.exponent += number;
-                } else if let (Some(slope), true) = (homogeneous(Function::Sign), number.is_integer()) {
+                } else if let (Some(slope), true) =
+                    (homogeneous(Function::Sign), number.is_integer())
+                {
                     if number.numer().is_odd() {
                         let sign = Expr::function(Function::Sign, vec![slope]).ok()?;
                         *coefficient = &*coefficient * &sign;
@@ -274,8 +303,10 @@ pub(crate) fn take_powers(factors: &mut Vec<Expr>, coefficient: &mut Expr, coord
 /// The factors of a term that contain the coordinate, and the product of the others.
 pub(crate) fn split(term: &Expr, coordinate: Symbol) -> (Expr, Vec<Expr>) {
     let (number, factors) = term.factors();
-    let (inside, outside): (Vec<Expr>, Vec<Expr>) =
-        factors.iter().cloned().partition(|factor| factor.contains(coordinate));
+    let (inside, outside): (Vec<Expr>, Vec<Expr>) = factors
+        .iter()
+        .cloned()
+        .partition(|factor| factor.contains(coordinate));
     let outside = Expr::product(std::iter::once(Expr::number(number)).chain(outside));
     (outside, inside)
 }

@@ -1,5 +1,6 @@
-//! Where a motion of a force about its equilibrium, released at rest, turns back ([`crate::numeric::ode::energy`]), in distances from the
-//! equilibrium, so that nothing is lost near rest. What lies between the turning points is integrated by who asks for it.
+//! Where a motion of a force about its equilibrium, released at rest, turns back
+//! ([`crate::numeric::ode::energy`]), in distances from the equilibrium, so that nothing is lost
+//! near rest. What lies between the turning points is integrated by who asks for it.
 
 use super::force::Force;
 use super::well::Well;
@@ -9,7 +10,8 @@ use crate::numeric::ode::energy::{self, PeriodError};
 use crate::solution::AmplitudeConvention;
 
 impl Force {
-    /// The distance from the equilibrium of the other turning point of a motion released at the distance `start`.
+    /// The distance from the equilibrium of the other turning point of a motion released at the
+    /// distance `start`.
     ///
     /// # Errors
     /// See [`PeriodError`].
@@ -17,8 +19,8 @@ impl Force {
         self.between_turning_points(start, |_, end| Ok(end))
     }
 
-    /// What `run` makes of the force and the other turning point, where no pole stands in the way: one so weak that rounding
-    /// hides its energy would be passed unseen.
+    /// What `run` makes of the force and the other turning point, where no pole stands in the way:
+    /// one so weak that rounding hides its energy would be passed unseen.
     ///
     /// # Errors
     /// See [`PeriodError`]; places are positions.
@@ -30,10 +32,16 @@ impl Force {
         let (value, cuts) = (|y| self.at(y), |from, to| self.cuts(from, to));
         let force = energy::Force::with_cuts(&value, &cuts);
         let no_value = |distance: f64| match self.overflow(distance) {
-            Some(term) => PeriodError::Overflow { place: distance, term },
+            Some(term) => PeriodError::Overflow {
+                place: distance,
+                term,
+            },
             None => PeriodError::Pole { place: distance },
         };
-        let pole = |end: f64| self.gap(start, end).map(|place| no_value(place - self.equilibrium()));
+        let pole = |end: f64| {
+            self.gap(start, end)
+                .map(|place| no_value(place - self.equilibrium()))
+        };
         if self.overflow(start).is_some() {
             return Err(no_value(start).moved(self.equilibrium()));
         }
@@ -42,7 +50,9 @@ impl Force {
                 Some(error) => Err(error),
                 None => run(&force, end),
             },
-            Err(error @ (PeriodError::Quadrature(_) | PeriodError::Root(_))) => Err(pole(-start).unwrap_or(error)),
+            Err(error @ (PeriodError::Quadrature(_) | PeriodError::Root(_))) => {
+                Err(pole(-start).unwrap_or(error))
+            }
             // Beyond a pole that the search has passed unseen nothing is known.
             Err(error @ PeriodError::Escapes { searched, .. }) => Err(match pole(searched) {
                 Some(pole @ PeriodError::Pole { .. }) => pole,
@@ -53,8 +63,9 @@ impl Force {
         found.map_err(|error| error.moved(self.equilibrium()))
     }
 
-    /// Why a motion released at the distance `start` has no period, where a search or a quadrature has failed with `error`: at the
-    /// separatrix that ends the well neither knows what it met. It takes a search for the rims of the well, so this is for messages.
+    /// Why a motion released at the distance `start` has no period, where a search or a quadrature
+    /// has failed with `error`: at the separatrix that ends the well neither knows what it met. It
+    /// takes a search for the rims of the well, so this is for messages.
     pub fn why_no_period(&self, start: f64, error: PeriodError) -> PeriodError {
         /// As near to the end of the well, relatively, as its place is known.
         const ON: f64 = 1e-13;
@@ -63,7 +74,9 @@ impl Force {
         let lost = matches!(error, PeriodError::Quadrature(_) | PeriodError::Root(_));
         let gone = matches!(
             error,
-            PeriodError::PushedAway { .. } | PeriodError::OtherWell { .. } | PeriodError::Escapes { .. }
+            PeriodError::PushedAway { .. }
+                | PeriodError::OtherWell { .. }
+                | PeriodError::Escapes { .. }
         );
         if !lost && !gone {
             return error;
@@ -72,8 +85,14 @@ impl Force {
         if let Some(inner) = well.and_then(|well| well.inner) {
             let (place, position) = (inner.place, self.equilibrium() + start);
             return match start.abs() / inner.amplitude - 1.0 {
-                short if short.abs() <= ON => PeriodError::Separatrix { start: position, place },
-                short if short.abs() <= NEAR && lost => PeriodError::NearSeparatrix { start: position, place },
+                short if short.abs() <= ON => PeriodError::Separatrix {
+                    start: position,
+                    place,
+                },
+                short if short.abs() <= NEAR && lost => PeriodError::NearSeparatrix {
+                    start: position,
+                    place,
+                },
                 short if short < 0.0 => PeriodError::OneWell {
                     start: position,
                     equilibrium: self.equilibrium(),
@@ -88,13 +107,17 @@ impl Force {
         let beyond = start / end.amplitude - 1.0;
         let (place, position) = (end.rim.place, self.equilibrium() + start);
         match beyond.abs() {
-            short if end.rim.separatrix && short <= ON => PeriodError::Separatrix { start: position, place },
-            short if end.rim.separatrix && short <= NEAR && lost => {
-                PeriodError::NearSeparatrix { start: position, place }
-            }
-            _ if gone && beyond >= 0.0 => {
-                error.with_range(well.in_words(AmplitudeConvention::Initial.symbol(), self.coordinate()))
-            }
+            short if end.rim.separatrix && short <= ON => PeriodError::Separatrix {
+                start: position,
+                place,
+            },
+            short if end.rim.separatrix && short <= NEAR && lost => PeriodError::NearSeparatrix {
+                start: position,
+                place,
+            },
+            _ if gone && beyond >= 0.0 => error.with_range(
+                well.in_words(AmplitudeConvention::Initial.symbol(), self.coordinate()),
+            ),
             _ => error,
         }
     }

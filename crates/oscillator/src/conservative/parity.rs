@@ -1,6 +1,7 @@
 //! Whether a force is odd, decided for the function and not for the way it is written.
 //!
-//! A wall on both sides may be written `max(x - 1, 0) + min(x + 1, 0)`, in steps, or with `abs`. All of them are made of steps:
+//! A wall on both sides may be written `max(x - 1, 0) + min(x + 1, 0)`, in steps, or with `abs`.
+//! All of them are made of steps:
 //!
 //! ```text
 //! abs(u) = u (2 H(u) - 1),   sgn(u) = 2 H(u) - 1,   max(u, v) = v + (u - v) H(u - v),   min(u, v) = u - (u - v) H(u - v)
@@ -54,8 +55,12 @@ fn in_steps(expr: &Expr, coordinate: Symbol) -> Result<Expr, ExprError> {
         let two = Expr::from(2);
         match (expr.node(), children) {
             (Node::Function(Function::Step, _), [u]) => step(u, coordinate),
-            (Node::Function(Function::Absolute, _), [u]) => Ok(u * &(two * step(u, coordinate)? - Expr::one())),
-            (Node::Function(Function::Sign, _), [u]) => Ok(two * step(u, coordinate)? - Expr::one()),
+            (Node::Function(Function::Absolute, _), [u]) => {
+                Ok(u * &(two * step(u, coordinate)? - Expr::one()))
+            }
+            (Node::Function(Function::Sign, _), [u]) => {
+                Ok(two * step(u, coordinate)? - Expr::one())
+            }
             (Node::Function(Function::Maximum, _), [u, v]) => {
                 let difference = (u - v).expand()?;
                 Ok(v + &(&difference * &step(&difference, coordinate)?))
@@ -68,10 +73,17 @@ fn in_steps(expr: &Expr, coordinate: Symbol) -> Result<Expr, ExprError> {
         }
     })?;
     let written_out = stepwise.expand()?;
-    Expr::sum(written_out.terms().iter().map(|term| merged(term, coordinate))).expand()
+    Expr::sum(
+        written_out
+            .terms()
+            .iter()
+            .map(|term| merged(term, coordinate)),
+    )
+    .expand()
 }
 
-/// `H(u)`, a `u` with steps of its own taken apart first: `H(u) = (1 - H(v)) H(u at H(v) = 0) + H(v) H(u at H(v) = 1)`.
+/// `H(u)`, a `u` with steps of its own taken apart first:
+/// `H(u) = (1 - H(v)) H(u at H(v) = 0) + H(v) H(u at H(v) = 1)`.
 fn step(argument: &Expr, coordinate: Symbol) -> Result<Expr, ExprError> {
     const MOST_PIECES: usize = 64;
     let mut open = vec![(Expr::one(), argument.clone())];
@@ -120,10 +132,15 @@ fn oriented_step(argument: &Expr, coordinate: Symbol) -> Result<Expr, ExprError>
     };
     let scaled = Expr::divide(&argument, &Expr::number(unit.clone()))?.expand()?;
     let step = Expr::function(Function::Step, vec![scaled])?;
-    Ok(if unit.is_negative() { Expr::one() - step } else { step })
+    Ok(if unit.is_negative() {
+        Expr::one() - step
+    } else {
+        step
+    })
 }
 
-/// A product with its steps merged: powers are left out, and of steps at numbers only the last counts.
+/// A product with its steps merged: powers are left out, and of steps at numbers only the last
+/// counts.
 fn merged(term: &Expr, coordinate: Symbol) -> Expr {
     let (number, factors) = term.factors();
     let mut others = vec![Expr::number(number)];
@@ -139,9 +156,12 @@ fn merged(term: &Expr, coordinate: Symbol) -> Expr {
             others.push(factor.clone());
             continue;
         };
-        let place = linear_in(argument, coordinate).and_then(|(_, constant)| constant.as_number().map(|c| -c));
+        let place = linear_in(argument, coordinate)
+            .and_then(|(_, constant)| constant.as_number().map(|c| -c));
         match place {
-            Some(place) if last.as_ref().is_none_or(|known| place > known.0) => last = Some((place, base)),
+            Some(place) if last.as_ref().is_none_or(|known| place > known.0) => {
+                last = Some((place, base))
+            }
             Some(_) => {}
             None => others.push(base),
         }

@@ -1,15 +1,17 @@
-//! Motions of an odd force through its equilibrium, by their amplitudes: those about rest, and those that run over hilltops of the
-//! potential, as round both wells of `V = -x^2/2 + x^4/4`.
+//! Motions of an odd force through its equilibrium, by their amplitudes: those about rest, and
+//! those that run over hilltops of the potential, as round both wells of `V = -x^2/2 + x^4/4`.
 //!
-//! References: L. D. Landau and E. M. Lifshitz, *Mechanics*, 3rd ed., section 11; J. Guckenheimer and P. Holmes, *Nonlinear
-//! Oscillations, Dynamical Systems, and Bifurcations of Vector Fields*, Springer 1983, section 2.2 (the orbits outside of the
-//! homoclinic loops). Released at rest from `x_e + A` a motion swings to `x_e - A` and back where
+//! References: L. D. Landau and E. M. Lifshitz, *Mechanics*, 3rd ed., section 11; J. Guckenheimer
+//! and P. Holmes, *Nonlinear Oscillations, Dynamical Systems, and Bifurcations of Vector Fields*,
+//! Springer 1983, section 2.2 (the orbits outside of the homoclinic loops). Released at rest from
+//! `x_e + A` a motion swings to `x_e - A` and back where
 //!
 //! ```text
 //! f(x_e + A) > 0,   V(x_e + A) > V(x_e + y)   for all |y| < A
 //! ```
 //!
-//! which holds in ranges of `A`: each begins where `V` is that of the highest hilltop before, and ends at the next one.
+//! which holds in ranges of `A`: each begins where `V` is that of the highest hilltop before, and
+//! ends at the next one.
 
 use super::force::Force;
 use super::well::{Rim, end_of_force, rise, sign_change};
@@ -20,8 +22,8 @@ use crate::numeric::ode::root::find_root;
 pub struct Passage {
     /// The amplitude that all of its motions exceed; zero where they begin at rest.
     pub from: f64,
-    /// How far from the equilibrium the hilltop is that they pass and the motion of that amplitude does not: zero for the equilibrium
-    /// itself.
+    /// How far from the equilibrium the hilltop is that they pass and the motion of that amplitude
+    /// does not: zero for the equilibrium itself.
     pub over: f64,
     /// Where the range ends, if it does: the place as a distance from the equilibrium.
     pub to: Option<Rim>,
@@ -34,7 +36,8 @@ const GROWTH: f64 = 1.02;
 /// Equilibria on one side after which a force is taken to go on like that.
 const MOST: usize = 24;
 
-/// Whether a force pushes away from its equilibrium on both sides; `unit` is the scale of what is looked at.
+/// Whether a force pushes away from its equilibrium on both sides; `unit` is the scale of what is
+/// looked at.
 pub fn pushes_away(force: &Force, unit: f64) -> bool {
     let unit = unit.abs();
     let distances = (-DECADES..-2).map(|k| unit * 10.0_f64.powi(k));
@@ -45,7 +48,8 @@ pub fn pushes_away(force: &Force, unit: f64) -> bool {
     first.is_some_and(|sides| sides.iter().all(|side| *side < 0.0))
 }
 
-/// The ranges of amplitudes of an odd force, outwards, up to twenty-four equilibria or twelve decades beyond the unit.
+/// The ranges of amplitudes of an odd force, outwards, up to twenty-four equilibria or twelve
+/// decades beyond the unit.
 pub fn passages(force: &Force, unit: f64) -> Vec<Passage> {
     let Some(side) = Side::new(force, unit.abs()) else {
         return vec![];
@@ -67,7 +71,11 @@ pub fn passages(force: &Force, unit: f64) -> Vec<Passage> {
             }),
             None => side.end,
         };
-        let begin = if number == 0 { 0.0 } else { side.places[number - 1] };
+        let begin = if number == 0 {
+            0.0
+        } else {
+            side.places[number - 1]
+        };
         if let Some(from) = beginning(force, begin, rim.map(|rim| rim.place), height) {
             found.push(Passage {
                 from,
@@ -89,11 +97,16 @@ pub fn passages(force: &Force, unit: f64) -> Vec<Passage> {
 /// The range in which an amplitude lies, or the next one outwards, or the last.
 pub fn passage_at(passages: &[Passage], amplitude: f64) -> Option<&Passage> {
     let size = amplitude.abs();
-    let within = |passage: &&Passage| passage.to.is_none_or(|rim| size < rim.place || passage.from >= size);
+    let within = |passage: &&Passage| {
+        passage
+            .to
+            .is_none_or(|rim| size < rim.place || passage.from >= size)
+    };
     passages.iter().find(within).or(passages.last())
 }
 
-/// The first amplitude from a bottom at `begin` on at which the potential exceeds a height, before the end; zero at rest.
+/// The first amplitude from a bottom at `begin` on at which the potential exceeds a height, before
+/// the end; zero at rest.
 fn beginning(force: &Force, begin: f64, end: Option<f64>, height: f64) -> Option<f64> {
     /// Of the depth: less is rounding.
     const VISIBLE: f64 = 1e-9;
@@ -229,7 +242,9 @@ mod tests {
         let force = Force::new(&force, "x".into(), &Expr::zero(), &BTreeMap::new(), unit).unwrap();
         let found = passages(&force, unit).into_iter();
         let end = |rim: Rim| rim.place;
-        found.map(|range| (range.from, range.over, range.to.map(end))).collect()
+        found
+            .map(|range| (range.from, range.over, range.to.map(end)))
+            .collect()
     }
 
     #[test]
@@ -242,7 +257,10 @@ mod tests {
                     (Some(one), Some(other)) => close(one, other),
                     (one, other) => one == other,
                 };
-                assert!(close(a.0, b.0) && close(a.1, b.1) && ends, "{found:?} for {expected:?}");
+                assert!(
+                    close(a.0, b.0) && close(a.1, b.1) && ends,
+                    "{found:?} for {expected:?}"
+                );
             }
         };
         let pi = std::f64::consts::PI;
@@ -257,7 +275,8 @@ mod tests {
                 &ranges("x*(x^2 - 1)*(x^2 - 4)", unit),
                 &[(0.0, 0.0, Some(1.0)), (5.5_f64.sqrt(), 1.0, None)],
             );
-            // Outer hilltops below the one in the middle keep nothing in: V = -x^2/2 + x^4/4 - x^6/25.
+            // Outer hilltops below the one in the middle keep nothing in: V = -x^2/2 + x^4/4 -
+            // x^6/25.
             near(&ranges("-x + x^3 - 6*x^5/25", unit), &[]);
             near(&ranges("x + x^3", unit), &[(0.0, 0.0, None)]);
         }
@@ -279,8 +298,14 @@ mod tests {
             pushes_away(&force, unit)
         };
         for unit in [1e-5, 1.0, 1e5] {
-            assert!(away("x^3 - x", "0", unit) && away("x^5 - x^3", "0", unit) && away("sin(x)", "pi", 1.0));
-            assert!(!away("x^3 - x", "1", unit) && !away("x^3", "0", unit) && !away("x^2", "0", unit));
+            assert!(
+                away("x^3 - x", "0", unit)
+                    && away("x^5 - x^3", "0", unit)
+                    && away("sin(x)", "pi", 1.0)
+            );
+            assert!(
+                !away("x^3 - x", "1", unit) && !away("x^3", "0", unit) && !away("x^2", "0", unit)
+            );
         }
     }
 }

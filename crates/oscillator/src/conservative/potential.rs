@@ -32,7 +32,8 @@ pub fn potential(force: &Expr, coordinate: Symbol) -> Option<Expr> {
         let parts = force.terms().iter().map(|term| of_term(term, coordinate));
         Some(Expr::sum(parts.collect::<Option<Vec<_>>>()?))
     };
-    // As it was typed, so that (x - xc)^(3/2)*H(x - xc) and 1/(1 + x^2) stay together, else written out.
+    // As it was typed, so that (x - xc)^(3/2)*H(x - xc) and 1/(1 + x^2) stay together, else written
+    // out.
     let force = with_steps(force, coordinate).ok()?;
     terms(&force).or_else(|| terms(&force.expand().ok()?))
 }
@@ -41,21 +42,29 @@ fn of_term(term: &Expr, coordinate: Symbol) -> Option<Expr> {
     at_sight(term, coordinate).or_else(|| by_substitution(term, coordinate))
 }
 
-/// `h(g(x)) g'(x)`, whose integral is that of `h` at `g`, for one of the functions that the term is made of as `g`.
+/// `h(g(x)) g'(x)`, whose integral is that of `h` at `g`, for one of the functions that the term is
+/// made of as `g`.
 fn by_substitution(term: &Expr, coordinate: Symbol) -> Option<Expr> {
     /// So many are tried.
     const CANDIDATES: usize = 8;
     let (outside, inside) = split(term, coordinate);
     let integrand = Expr::product(inside);
     let square = Expr::from(coordinate).integer_power(2).ok()?;
-    let parts = integrand.unique_nodes().filter_map(|node| match node.node() {
-        // A whole power of one is tried by its base.
-        Node::Sum(_) => Some(node.clone()),
-        Node::Function(function, _) if !matches!(function, Function::Absolute | Function::Sign | Function::Step) => {
-            Some(node.clone())
-        }
-        _ => None,
-    });
+    let parts = integrand
+        .unique_nodes()
+        .filter_map(|node| match node.node() {
+            // A whole power of one is tried by its base.
+            Node::Sum(_) => Some(node.clone()),
+            Node::Function(function, _)
+                if !matches!(
+                    function,
+                    Function::Absolute | Function::Sign | Function::Step
+                ) =>
+            {
+                Some(node.clone())
+            }
+            _ => None,
+        });
     let parts = parts.filter(|part| *part != integrand && part.contains(coordinate));
     let names: Vec<Symbol> = term.symbols().into_iter().collect();
     let variable = fresh("y", &names);
@@ -64,7 +73,12 @@ fn by_substitution(term: &Expr, coordinate: Symbol) -> Option<Expr> {
         if slope.is_zero() {
             return None;
         }
-        let by_part = in_terms_of(&part, variable, &Expr::divide(&integrand, &slope).ok()?, coordinate)?;
+        let by_part = in_terms_of(
+            &part,
+            variable,
+            &Expr::divide(&integrand, &slope).ok()?,
+            coordinate,
+        )?;
         let terms = by_part.expand().ok()?;
         let terms = terms
             .terms()
@@ -73,14 +87,19 @@ fn by_substitution(term: &Expr, coordinate: Symbol) -> Option<Expr> {
         let value = Expr::sum(terms.collect::<Option<Vec<_>>>()?);
         value.substitute(variable, &part).ok()
     };
-    let found = std::iter::once(square).chain(parts).take(CANDIDATES).find_map(value)?;
+    let found = std::iter::once(square)
+        .chain(parts)
+        .take(CANDIDATES)
+        .find_map(value)?;
     has_logarithms_at_rest(&found, coordinate).then(|| outside * found)
 }
 
 /// `c u^n`, where `u` is positive or the power has a value.
 fn power_of(term: &Expr, variable: Symbol) -> Option<Expr> {
     let (outside, inside) = split(term, variable);
-    let [factor] = inside.as_slice() else { return None };
+    let [factor] = inside.as_slice() else {
+        return None;
+    };
     let (base, exponent) = factor.base_and_exponent();
     let next = Expr::number(exponent.as_number()? + Rational::one());
     if base.as_symbol() != Some(variable) {
@@ -177,7 +196,9 @@ fn shifted_power(factors: &[Expr], coordinate: Symbol) -> Option<Expr> {
     for factor in factors {
         let (inside, power) = factor.base_and_exponent();
         match inside.node() {
-            Node::Function(Function::Step, arguments) if step.is_none() => step = arguments.first().cloned(),
+            Node::Function(Function::Step, arguments) if step.is_none() => {
+                step = arguments.first().cloned()
+            }
             Node::Sum(_) if base.is_none() => {
                 exponent = power.as_number()?.clone();
                 base = Some(inside);
@@ -206,7 +227,9 @@ fn shifted_power(factors: &[Expr], coordinate: Symbol) -> Option<Expr> {
             _ => Expr::function(Function::Absolute, vec![base]).ok()?,
         };
         let logarithm = Expr::function(Function::Log, vec![size]).ok()?;
-        return step.is_none().then(|| Expr::divide(&logarithm, &base_slope).ok())?;
+        return step
+            .is_none()
+            .then(|| Expr::divide(&logarithm, &base_slope).ok())?;
     }
     let value = Expr::divide(
         &Expr::power(&base, &Expr::number(next.clone())).ok()?,
@@ -245,12 +268,19 @@ fn with_power(factor: &Expr, exponent: u32, coordinate: Symbol) -> Option<Expr> 
                         (Function::Exp, _) => {
                             let argument = argument * &Expr::number(power);
                             let value = call(Function::Exp, &argument)?;
-                            return exponential_by_parts(&value, &linear_in(&argument, coordinate)?.0, exponent, &x);
+                            return exponential_by_parts(
+                                &value,
+                                &linear_in(&argument, coordinate)?.0,
+                                exponent,
+                                &x,
+                            );
                         }
                         (_, 1) => *function,
                         (Function::Sin | Function::Cos, 2) if exponent == 0 => {
                             // (x -+ sin u cos u/k)/2
-                            let product = divided(call(Function::Sin, argument)? * call(Function::Cos, argument)?)?;
+                            let product = divided(
+                                call(Function::Sin, argument)? * call(Function::Cos, argument)?,
+                            )?;
                             let sum = if *function == Function::Sin {
                                 x - product
                             } else {
@@ -268,7 +298,9 @@ fn with_power(factor: &Expr, exponent: u32, coordinate: Symbol) -> Option<Expr> 
                 Function::Tanh if power.is_one() && exponent == 0 => {
                     divided(call(Function::Log, &call(Function::Cosh, argument)?)?)
                 }
-                Function::Log if power.is_one() && exponent == 0 => Some(divided(argument * &base)? - x),
+                Function::Log if power.is_one() && exponent == 0 => {
+                    Some(divided(argument * &base)? - x)
+                }
                 Function::Atan if power.is_one() && exponent == 0 => {
                     let circle = Expr::one() + argument.integer_power(2).ok()?;
                     let logarithm = call(Function::Log, &circle.expand().ok()?)?;
@@ -297,7 +329,13 @@ fn exponential_by_parts(value: &Expr, slope: &Expr, exponent: u32, x: &Expr) -> 
     Some(Expr::sum(terms))
 }
 
-fn wave_by_parts(function: Function, argument: &Expr, slope: &Expr, exponent: u32, x: &Expr) -> Option<Expr> {
+fn wave_by_parts(
+    function: Function,
+    argument: &Expr,
+    slope: &Expr,
+    exponent: u32,
+    x: &Expr,
+) -> Option<Expr> {
     let mut terms = Vec::new();
     let (mut function, mut factor) = (function, Expr::one());
     for power in (0..=i64::from(exponent)).rev() {
@@ -323,13 +361,21 @@ fn wave_by_parts(function: Function, argument: &Expr, slope: &Expr, exponent: u3
 }
 
 /// `x^n (a + b x^2)^p` for odd `n`, by `y = x^2`: `int y^m (a + b y)^p dy/2`.
-fn quadratic_power(base: &Expr, power: &Rational, exponent: u32, coordinate: Symbol) -> Option<Expr> {
+fn quadratic_power(
+    base: &Expr,
+    power: &Rational,
+    exponent: u32,
+    coordinate: Symbol,
+) -> Option<Expr> {
     if exponent.is_multiple_of(2) {
         return None;
     }
     let square = Expr::from(coordinate).integer_power(2).ok()?;
     let a = base.substitute(coordinate, &Expr::zero()).ok()?;
-    let b = Expr::divide(&(base - &a).expand().ok()?, &square).ok()?.expand().ok()?;
+    let b = Expr::divide(&(base - &a).expand().ok()?, &square)
+        .ok()?
+        .expand()
+        .ok()?;
     if b.is_zero() || b.contains(coordinate) {
         return None;
     }
@@ -353,7 +399,8 @@ fn quadratic_power(base: &Expr, power: &Rational, exponent: u32, coordinate: Sym
             left => (-&a).integer_power(i64::from(left)).ok()?,
         };
         terms.push(grown * rest * Expr::number(binomial.clone()));
-        binomial = binomial * Rational::from_integer((m - i).into()) / Rational::from_integer((i + 1).into());
+        binomial = binomial * Rational::from_integer((m - i).into())
+            / Rational::from_integer((i + 1).into());
     }
     let below = Expr::from(2) * b.integer_power(i64::from(m) + 1).ok()?;
     Expr::divide(&Expr::sum(terms), &below).ok()
@@ -396,10 +443,14 @@ mod tests {
             "atan(x)/(1 + x^2) + x/(2 - x^2)*log(2 + 1/3)",
         ] {
             let force: Expr = text.parse().unwrap();
-            let potential = potential(&force, "x".into()).unwrap_or_else(|| panic!("no potential of {text}"));
-            let [force, potential] = [&force, &potential].map(|e| CompiledFunction::new(e, &["x".into()]).unwrap());
+            let potential =
+                potential(&force, "x".into()).unwrap_or_else(|| panic!("no potential of {text}"));
+            let [force, potential] =
+                [&force, &potential].map(|e| CompiledFunction::new(e, &["x".into()]).unwrap());
             for (from, to) in [(0.6, 1.3), (0.05, 0.3), (-1.2, -0.4)] {
-                let work = integrate_smooth(|x| force.call(&[x]), from, to, 1e-13).unwrap().0;
+                let work = integrate_smooth(|x| force.call(&[x]), from, to, 1e-13)
+                    .unwrap()
+                    .0;
                 let rise = potential.call(&[to]) - potential.call(&[from]);
                 assert!(
                     (work - rise).abs() < 1e-12 * (1.0 + work.abs()),
@@ -420,7 +471,11 @@ mod tests {
             "x*sqrt(1 + x^2 + x^4)",
             "(x - 1/2)^(3/2)*H(x - 1/3)",
         ] {
-            assert_eq!(potential(&text.parse().unwrap(), "x".into()), None, "{text}");
+            assert_eq!(
+                potential(&text.parse().unwrap(), "x".into()),
+                None,
+                "{text}"
+            );
         }
     }
 }

@@ -8,7 +8,8 @@ use crate::symbol::Symbol;
 /// The highest whole power beside a function that is no power.
 const HIGHEST_POWER: usize = 24;
 
-/// `|y|^exponent`, times `sgn(y)` where odd. The exponent may be a symbol, which is taken to be above -1.
+/// `|y|^exponent`, times `sgn(y)` where odd. The exponent may be a symbol, which is taken to be
+/// above -1.
 pub(crate) struct Power {
     /// The power of the size.
     pub(crate) exponent: Expr,
@@ -29,7 +30,8 @@ impl Power {
     pub(crate) fn takes(&mut self, factor: &Expr, variable: Symbol) -> bool {
         let (base, exponent) = factor.base_and_exponent();
         let number = exponent.as_number();
-        let of_variable = |arguments: &[Expr]| arguments.first().and_then(Expr::as_symbol) == Some(variable);
+        let of_variable =
+            |arguments: &[Expr]| arguments.first().and_then(Expr::as_symbol) == Some(variable);
         match base.node() {
             // An even root of y exists for y > 0 alone.
             Node::Symbol(name) if *name == variable => match number {
@@ -70,7 +72,9 @@ impl Power {
             return Expr::from(variable).integer_power(count as i64).ok();
         }
         match self.odd {
-            true => Some(&power * &Expr::function(Function::Sign, vec![Expr::from(variable)]).ok()?),
+            true => {
+                Some(&power * &Expr::function(Function::Sign, vec![Expr::from(variable)]).ok()?)
+            }
             false => Some(power),
         }
     }

@@ -1,7 +1,8 @@
 //! Projections of `f(A cos theta)` on `cos(k theta)` in closed form.
 //!
-//! References: NIST Digital Library of Mathematical Functions 10.12 and 10.35 (Jacobi-Anger), 5.12.5 (powers of the
-//! cosine); A. Gelb, W. E. Vander Velde, *Multiple-Input Describing Functions*, McGraw-Hill 1968, chapter 2 (arcs).
+//! References: NIST Digital Library of Mathematical Functions 10.12 and 10.35
+//! (Jacobi-Anger), 5.12.5 (powers of the cosine); A. Gelb, W. E. Vander Velde, *Multiple-Input Describing
+//! Functions*, McGraw-Hill 1968, chapter 2 (arcs).
 //!
 //! ```text
 //! c_k          = (2/pi) int_0^pi f(A cos theta) cos(k theta) dtheta          (c_0 is twice the mean)
@@ -24,8 +25,8 @@ use crate::symbol::Symbol;
 /// The highest power of the coordinate beside a sine, an exponential or a step.
 const HIGHEST_POWER: usize = 24;
 
-/// `c_k` of a force in `coordinate` for the motion `amplitude * cos(theta)`, `amplitude > 0`; `None` where a term has no
-/// closed form here.
+/// `c_k` of a force in `coordinate` for the motion `amplitude * cos(theta)`, `amplitude > 0`;
+/// `None` where a term has no closed form here.
 ///
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
@@ -34,7 +35,12 @@ const HIGHEST_POWER: usize = 24;
 /// let first = cosine_coefficient(&force, "x".into(), &Expr::symbol("A"), 1).unwrap();
 /// assert_eq!(first.to_string(), "2*J1(A)");
 /// ```
-pub fn cosine_coefficient(force: &Expr, coordinate: Symbol, amplitude: &Expr, k: usize) -> Option<Expr> {
+pub fn cosine_coefficient(
+    force: &Expr,
+    coordinate: Symbol,
+    amplitude: &Expr,
+    k: usize,
+) -> Option<Expr> {
     let expanded = with_steps(force, coordinate).ok()?.expand().ok()?;
     let mut sum = Vec::new();
     for term in expanded.terms() {
@@ -46,8 +52,9 @@ pub fn cosine_coefficient(force: &Expr, coordinate: Symbol, amplitude: &Expr, k:
     Expr::sum(sum).expand().ok()
 }
 
-/// Products of sines and cosines, and of exponentials, as sums: `sin u cos v = (sin(u + v) + sin(u - v))/2`. Each entry is a
-/// factor and what it multiplies, with at most one such function left.
+/// Products of sines and cosines, and of exponentials, as sums:
+/// `sin u cos v = (sin(u + v) + sin(u - v))/2`. Each entry is a factor and what it multiplies, with
+/// at most one such function left.
 fn linearised(factors: Vec<Expr>, coordinate: Symbol) -> Option<Vec<(Expr, Vec<Expr>)>> {
     let (mut waves, mut rest) = (Vec::new(), Vec::new());
     for factor in factors {
@@ -65,7 +72,10 @@ fn linearised(factors: Vec<Expr>, coordinate: Symbol) -> Option<Vec<(Expr, Vec<E
                     if !exponent.as_number()?.is_integer() {
                         return None;
                     }
-                    waves.extend(std::iter::repeat_n((*function, arguments[0].clone()), times));
+                    waves.extend(std::iter::repeat_n(
+                        (*function, arguments[0].clone()),
+                        times,
+                    ));
                 }
             }
             _ => rest.push(factor),
@@ -159,10 +169,13 @@ fn of_term(mut factors: Vec<Expr>, coordinate: Symbol, amplitude: &Expr, k: usiz
         .to_usize()
         .filter(|&n| whole && n <= HIGHEST_POWER)?;
     let [factor] = factors.as_slice() else {
-        return steps_coefficient(&factors, exponent, coordinate, amplitude, k).map(|value| coefficient * value);
+        return steps_coefficient(&factors, exponent, coordinate, amplitude, k)
+            .map(|value| coefficient * value);
     };
     let value = match factor.node() {
-        Node::Function(Function::Step, _) => steps_coefficient(&factors, exponent, coordinate, amplitude, k)?,
+        Node::Function(Function::Step, _) => {
+            steps_coefficient(&factors, exponent, coordinate, amplitude, k)?
+        }
         Node::Function(function, arguments) if wave_family(*function).is_some() => {
             let (slope, phase) = linear_in(arguments.first()?, coordinate)?;
             let argument = &slope * amplitude;
@@ -179,7 +192,8 @@ fn of_term(mut factors: Vec<Expr>, coordinate: Symbol, amplitude: &Expr, k: usiz
 
 /// `c_k` of `|cos|^n`, or of `sgn(cos) |cos|^n` where `odd`.
 fn power_coefficient(exponent: &Rational, odd: bool, k: usize) -> Option<Expr> {
-    // Where the cosine is zero those of its odd multiples are, too: one power of it more that an integral may take.
+    // Where the cosine is zero those of its odd multiples are, too: one power of it more that an
+    // integral may take.
     let lowest = if odd { ratio(-2, 1) } else { ratio(-1, 1) };
     if *exponent <= lowest {
         return None;
@@ -191,7 +205,11 @@ fn power_coefficient(exponent: &Rational, odd: bool, k: usize) -> Option<Expr> {
     let gamma = |argument: Expr| Expr::function(Function::Gamma, vec![argument]).ok();
     let one = Rational::one();
     let (above, below, start) = if odd {
-        (half(exponent + ratio(2, 1)), half(exponent + ratio(3, 1)), 1)
+        (
+            half(exponent + ratio(2, 1)),
+            half(exponent + ratio(3, 1)),
+            1,
+        )
     } else {
         (half(exponent + &one), half(exponent + ratio(2, 1)), 0)
     };
@@ -215,7 +233,8 @@ fn times_cosine(exponent: usize, k: usize, of: &dyn Fn(usize) -> Option<Expr>) -
     for i in 0..=exponent {
         let harmonic = (k + exponent).abs_diff(2 * i);
         sum.push(&Expr::number(binomial.clone()) * &of(harmonic)?);
-        binomial = binomial * Rational::from_integer((exponent - i).into()) / Rational::from_integer((i + 1).into());
+        binomial = binomial * Rational::from_integer((exponent - i).into())
+            / Rational::from_integer((i + 1).into());
     }
     Some(Expr::sum(sum) * Expr::number(num_traits::pow(ratio(1, 2), exponent)))
 }
@@ -243,7 +262,8 @@ fn wave_coefficient(function: Function, z: &Expr, phase: &Expr, k: usize) -> Opt
     }
 }
 
-/// `J_n(z)` or `I_n(z)` by those of order 0 and 1: `J_(n+1) = (2n/z) J_n - J_(n-1)`, `I_(n+1) = I_(n-1) - (2n/z) I_n`.
+/// `J_n(z)` or `I_n(z)` by those of order 0 and 1: `J_(n+1) = (2n/z) J_n - J_(n-1)`,
+/// `I_(n+1) = I_(n-1) - (2n/z) I_n`.
 fn bessel_function(circular: bool, n: usize, z: &Expr) -> Option<Expr> {
     let (zeroth, first) = match circular {
         true => (Function::BesselJ0, Function::BesselJ1),
@@ -287,9 +307,17 @@ fn steps_coefficient(
     // int cos(i theta) over the arc, times 2/pi: 0 <= theta < angle, or the rest up to pi.
     let arc = |i: usize| {
         let value = if i == 0 {
-            if above { angle.clone() } else { Expr::pi() - &angle }
+            if above {
+                angle.clone()
+            } else {
+                Expr::pi() - &angle
+            }
         } else {
-            let value = Expr::divide(&(chebyshev_second(i - 1, &cosine)? * &sine), &Expr::from(i as i64)).ok()?;
+            let value = Expr::divide(
+                &(chebyshev_second(i - 1, &cosine)? * &sine),
+                &Expr::from(i as i64),
+            )
+            .ok()?;
             if above { value } else { -value }
         };
         Expr::divide(&(Expr::from(2) * value), &Expr::pi()).ok()
@@ -299,8 +327,9 @@ fn steps_coefficient(
     Some(times_cosine(exponent, k, &arc)? * power)
 }
 
-/// `edge/amplitude` kept between -1 and 1, for beyond the edge is never reached, or always passed; and its angle. An edge
-/// with a minus is written by its mirror image, `acos(-c) = pi - acos(c)`, so that symmetric pairs add up.
+/// `edge/amplitude` kept between -1 and 1, for beyond the edge is never reached, or always passed;
+/// and its angle. An edge with a minus is written by its mirror image, `acos(-c) = pi - acos(c)`,
+/// so that symmetric pairs add up.
 fn edge_angle(edge: &Expr, amplitude: &Expr) -> Option<(Expr, Expr)> {
     if edge.terms().len() == 1 && edge.has_leading_minus() {
         let (cosine, angle) = edge_angle(&-edge, amplitude)?;
@@ -329,7 +358,13 @@ fn chebyshev_second(n: usize, c: &Expr) -> Option<Expr> {
 
 /// `c_k`, k = 0 or 1, of `x^n/(alpha + beta x^2)`: the quotient is divided out, and
 /// `(1/pi) int_0^pi dtheta/(alpha + beta A^2 cos^2) = 1/sqrt(alpha (alpha + beta A^2))`.
-fn quotient_coefficient(below: &Expr, exponent: usize, coordinate: Symbol, amplitude: &Expr, k: usize) -> Option<Expr> {
+fn quotient_coefficient(
+    below: &Expr,
+    exponent: usize,
+    coordinate: Symbol,
+    amplitude: &Expr,
+    k: usize,
+) -> Option<Expr> {
     if k > 1 {
         return None;
     }
@@ -346,9 +381,12 @@ fn quotient_coefficient(below: &Expr, exponent: usize, coordinate: Symbol, ampli
     if k.is_odd() != exponent.is_odd() {
         return Some(Expr::zero());
     }
-    // (1/pi) int g^n/(alpha + beta g^2) = ((1/pi) int g^(n-2) - alpha (1/pi) int g^(n-2)/(...))/beta, g = A cos theta.
+    // (1/pi) int g^n/(alpha + beta g^2) = ((1/pi) int g^(n-2) - alpha (1/pi) int
+    // g^(n-2)/(...))/beta, g = A cos theta.
     let square = amplitude.integer_power(2).ok()?;
-    let root = (&alpha * &(&alpha + &(&beta * &square)).expand().ok()?).sqrt().ok()?;
+    let root = (&alpha * &(&alpha + &(&beta * &square)).expand().ok()?)
+        .sqrt()
+        .ok()?;
     let even = if k == 1 { exponent + 1 } else { exponent };
     let mut value = Expr::divide(&Expr::from(2), &root).ok()?;
     let mut power = 0;
@@ -390,13 +428,17 @@ mod tests {
         angles
             .windows(2)
             .map(|pair| {
-                let integrand = |theta: f64| force.call(&[amplitude * theta.cos()]) * (k as f64 * theta).cos();
-                // cos = +-u^3 near the middle is not smooth: theta = from + (to - from) s^3 (10 - 15 s + 6 s^2) is.
+                let integrand =
+                    |theta: f64| force.call(&[amplitude * theta.cos()]) * (k as f64 * theta).cos();
+                // cos = +-u^3 near the middle is not smooth: theta = from + (to - from) s^3 (10 -
+                // 15 s + 6 s^2) is.
                 let smooth = |s: f64| {
-                    let theta = pair[0] + (pair[1] - pair[0]) * s.powi(3) * (10.0 - 15.0 * s + 6.0 * s * s);
+                    let theta =
+                        pair[0] + (pair[1] - pair[0]) * s.powi(3) * (10.0 - 15.0 * s + 6.0 * s * s);
                     30.0 * (pair[1] - pair[0]) * (s * (1.0 - s)).powi(2) * integrand(theta)
                 };
-                integrate_smooth(smooth, 0.0, 1.0, 1e-13).map_or_else(|_| f64::NAN, |(value, _)| value)
+                integrate_smooth(smooth, 0.0, 1.0, 1e-13)
+                    .map_or_else(|_| f64::NAN, |(value, _)| value)
             })
             .sum::<f64>()
             * 2.0
@@ -437,13 +479,17 @@ mod tests {
                 if text.contains("/x") && k % 2 == 0 {
                     continue;
                 }
-                let Some(formula) = cosine_coefficient(&force, "x".into(), &Expr::symbol("A"), k) else {
+                let Some(formula) = cosine_coefficient(&force, "x".into(), &Expr::symbol("A"), k)
+                else {
                     assert!(k > 1 && text.contains('/'), "{text} {k}");
                     continue;
                 };
-                // At small amplitudes the recurrence of the Bessel functions loses digits with every order.
+                // At small amplitudes the recurrence of the Bessel functions loses digits with
+                // every order.
                 for amplitude in if k < 2 { [0.3, 1.7] } else { [1.7, 2.6] } {
-                    let value = formula.evaluate(&BTreeMap::from([("A".into(), amplitude)])).unwrap();
+                    let value = formula
+                        .evaluate(&BTreeMap::from([("A".into(), amplitude)]))
+                        .unwrap();
                     let expected = by_quadrature(text, amplitude, k, corners);
                     assert!(
                         (value - expected).abs() < 2e-11,
@@ -459,10 +505,18 @@ mod tests {
         let force: Expr = "(x - c + d)*H(x - c + d)".parse().unwrap();
         let first = cosine_coefficient(&force, "x".into(), &Expr::symbol("A"), 1).unwrap();
         for edge in [-2.5, -0.7, 0.2, 3.0] {
-            let numbers = [("A".into(), 1.3), ("c".into(), edge + 1.0), ("d".into(), 1.0)];
+            let numbers = [
+                ("A".into(), 1.3),
+                ("c".into(), edge + 1.0),
+                ("d".into(), 1.0),
+            ];
             let value = first.evaluate(&numbers.into()).unwrap();
-            let expected = by_quadrature(&format!("(x - ({edge}))*H(x - ({edge}))"), 1.3, 1, &[edge]);
-            assert!((value - expected).abs() < 1e-11, "{edge}: {value} {expected}");
+            let expected =
+                by_quadrature(&format!("(x - ({edge}))*H(x - ({edge}))"), 1.3, 1, &[edge]);
+            assert!(
+                (value - expected).abs() < 1e-11,
+                "{edge}: {value} {expected}"
+            );
         }
     }
 

@@ -1,13 +1,16 @@
-//! The well of a conservative motion: how far it may be released on either side and still come back.
+//! The well of a conservative motion: how far it may be released on either side and still come
+//! back.
 //!
-//! Reference: L. D. Landau and E. M. Lifshitz, *Mechanics*, 3rd ed., section 11. Released at rest from `x_e + A` the motion has
-//! the energy `V(x_e + A)` and stays between the walls of the well where that is below both of its rims:
+//! Reference: L. D. Landau and E. M. Lifshitz, *Mechanics*, 3rd ed., section 11. Released at rest
+//! from `x_e + A` the motion has the energy `V(x_e + A)` and stays between the walls of the well
+//! where that is below both of its rims:
 //!
 //! ```text
 //! V(x_e + A) < V(rim),   rim = the unstable equilibrium on either side, where the force ends, or infinity where V levels off
 //! ```
 //!
-//! For an inertia that depends on the position too, the same holds of `U' = M f` with the energy `M x'^2/2 + U`.
+//! For an inertia that depends on the position too, the same holds of `U' = M f` with the energy
+//! `M x'^2/2 + U`.
 //!
 //! All lengths are measured by the amplitude asked for, so the units of the equation do not matter.
 
@@ -21,8 +24,8 @@ use crate::symbol::Symbol;
 /// Where a well ends on one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rim {
-    /// The unstable equilibrium, or the place where the force ends; infinite where the force dies away so fast that its potential
-    /// levels off.
+    /// The unstable equilibrium, or the place where the force ends; infinite where the force dies
+    /// away so fast that its potential levels off.
     pub place: f64,
     /// Whether it is an unstable equilibrium; otherwise the force has no value beyond it.
     pub separatrix: bool,
@@ -45,7 +48,8 @@ impl Wall {
     }
 }
 
-/// The largest amplitude of a periodic motion on one side, with its sign, and the rim over which it would leave.
+/// The largest amplitude of a periodic motion on one side, with its sign, and the rim over which it
+/// would leave.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct End {
     /// The amplitude, measured from the equilibrium.
@@ -65,7 +69,8 @@ pub struct Well {
     pub inner: Option<Inner>,
 }
 
-/// The least amplitude of motions through an unstable equilibrium, over the wells on both sides of it: smaller ones stay in one well.
+/// The least amplitude of motions through an unstable equilibrium, over the wells on both sides of
+/// it: smaller ones stay in one well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inner {
     /// Its size, which all motions exceed.
@@ -82,7 +87,8 @@ const STEPS: f64 = 64.0;
 const GROWTH: f64 = 1.02;
 
 impl Well {
-    /// The well of a force about its equilibrium, where it has an end; `amplitude` gives the scale of the search.
+    /// The well of a force about its equilibrium, where it has an end; `amplitude` gives the scale
+    /// of the search.
     pub fn new(force: &Force, amplitude: f64) -> Option<Self> {
         let unit = amplitude.abs();
         if pushes_away(force, unit) {
@@ -91,15 +97,17 @@ impl Well {
         Self::between(force, unit, |side| rim(force, side, unit))
     }
 
-    /// The well where the inertia depends on the position: `weighted` is the slope `M f` of the potential, `force` the force as it
-    /// stands in the equation. The product may go on where the motion does not, beside a zero of `M` at which `f` is infinite.
+    /// The well where the inertia depends on the position: `weighted` is the slope `M f` of the
+    /// potential, `force` the force as it stands in the equation. The product may go on where the
+    /// motion does not, beside a zero of `M` at which `f` is infinite.
     pub fn with_inertia(weighted: &Force, force: &Force, amplitude: f64) -> Option<Self> {
         let unit = amplitude.abs();
         if pushes_away(weighted, unit) {
             return None;
         }
         Self::between(weighted, unit, |side| {
-            let ends = rim(force, side, unit).filter(|wall| !wall.rim.separatrix && wall.rim.place.is_finite());
+            let ends = rim(force, side, unit)
+                .filter(|wall| !wall.rim.separatrix && wall.rim.place.is_finite());
             let distance = |wall: &Wall| (wall.rim.place - weighted.equilibrium()).abs();
             let nearest = rim(weighted, side, unit).into_iter().chain(ends);
             nearest.min_by(|one, other| distance(one).total_cmp(&distance(other)))
@@ -121,10 +129,12 @@ impl Well {
         };
         let (left, right) = (wall(-1.0), wall(1.0));
         let end = |side: f64, own: Option<Wall>, other: Option<Wall>| {
-            let own_end = own.filter(|wall| wall.rim.place.is_finite()).map(|wall| End {
-                amplitude: wall.rim.place - equilibrium,
-                rim: wall.rim,
-            });
+            let own_end = own
+                .filter(|wall| wall.rim.place.is_finite())
+                .map(|wall| End {
+                    amplitude: wall.rim.place - equilibrium,
+                    rim: wall.rim,
+                });
             // Released on this side, the motion may also leave over the other rim.
             let Some((rim, height)) = other.and_then(|wall| Some((wall.rim, wall.height?))) else {
                 return own_end;
@@ -135,8 +145,13 @@ impl Well {
             if own_end.is_none() && lower {
                 return None;
             }
-            let excess = |size: f64| rise(force, side * size).map_or(f64::NAN, |energy| energy / height - 1.0);
-            let (mut low, mut high) = (0.0, own_end.map_or(unit, |end| end.amplitude.abs() * (1.0 - 1e-12)));
+            let excess = |size: f64| {
+                rise(force, side * size).map_or(f64::NAN, |energy| energy / height - 1.0)
+            };
+            let (mut low, mut high) = (
+                0.0,
+                own_end.map_or(unit, |end| end.amplitude.abs() * (1.0 - 1e-12)),
+            );
             while own_end.is_none() && excess(high) <= 1e-9 && high < FARTHEST * unit {
                 // An amplitude whose energy is the height to the last digit brackets nothing.
                 if excess(high) < -1e-9 {
@@ -145,7 +160,11 @@ impl Well {
                 high *= 2.0;
             }
             if excess(high) > 1e-9
-                && let Ok(size) = find_root(|size| if size == 0.0 { -1.0 } else { excess(size) }, low, high)
+                && let Ok(size) = find_root(
+                    |size| if size == 0.0 { -1.0 } else { excess(size) },
+                    low,
+                    high,
+                )
             {
                 return Some(End {
                     amplitude: side * size,
@@ -162,7 +181,8 @@ impl Well {
         (well.low.is_some() || well.high.is_some()).then_some(well)
     }
 
-    /// The motions of an odd force through an unstable equilibrium: those of the amplitude, or the next larger ones.
+    /// The motions of an odd force through an unstable equilibrium: those of the amplitude, or the
+    /// next larger ones.
     fn over_hilltops(force: &Force, amplitude: f64) -> Option<Self> {
         let (passages, equilibrium) = (passages(force, amplitude), force.equilibrium());
         let passage = passage_at(&passages, amplitude)?;
@@ -200,7 +220,9 @@ impl Well {
         let because = |rim: Rim| {
             let place = significant(rim.place, 6);
             match rim.separatrix {
-                true => format!("the separatrix passes the unstable equilibrium {coordinate} = {place}"),
+                true => {
+                    format!("the separatrix passes the unstable equilibrium {coordinate} = {place}")
+                }
                 false if rim.place.is_infinite() => {
                     let sign = if rim.place < 0.0 { "-" } else { "" };
                     format!("beyond it the motion escapes to {coordinate} = {sign}infinity")
@@ -238,19 +260,33 @@ impl Well {
                 if even || low.rim == high.rim {
                     return format!("periodic for {range}: {}", because(high.rim));
                 }
-                format!("periodic for {range}: {}, {}", because(low.rim), because(high.rim))
+                format!(
+                    "periodic for {range}: {}, {}",
+                    because(low.rim),
+                    because(high.rim)
+                )
             }
-            (Some(low), None) => format!("periodic for {name} > {}: {}", number(low), because(low.rim)),
-            (None, Some(high)) => format!("periodic for {name} < {}: {}", number(high), because(high.rim)),
+            (Some(low), None) => format!(
+                "periodic for {name} > {}: {}",
+                number(low),
+                because(low.rim)
+            ),
+            (None, Some(high)) => format!(
+                "periodic for {name} < {}: {}",
+                number(high),
+                because(high.rim)
+            ),
             (None, None) => String::new(),
         }
     }
 }
 
-/// A force with more pieces on the way than this, such as a tangent over a million poles, is not followed through them.
+/// A force with more pieces on the way than this, such as a tangent over a million poles, is not
+/// followed through them.
 const MOST_PIECES: usize = 256;
 
-/// The potential above the bottom of the well at a distance; `None` where it is infinite, or beyond too many pieces.
+/// The potential above the bottom of the well at a distance; `None` where it is infinite, or beyond
+/// too many pieces.
 pub(super) fn rise(force: &Force, to: f64) -> Option<f64> {
     rise_between(force, 0.0, to)
 }
@@ -268,7 +304,9 @@ fn rise_between(force: &Force, from: f64, to: f64) -> Option<f64> {
         sum += match integrate_smooth(|y| force.at(y), pair[0], pair[1], 1e-10) {
             Ok((value, _)) => value,
             Err(QuadratureError::NotConverged {
-                value, error_estimate, ..
+                value,
+                error_estimate,
+                ..
             }) if error_estimate < 1e-6 * value.abs() => value,
             Err(_) if pair[0] == to => towards_the_end(force, pair[1], to)?,
             Err(_) if pair[1] == to => towards_the_end(force, pair[0], to)?,
@@ -278,14 +316,17 @@ fn rise_between(force: &Force, from: f64, to: f64) -> Option<f64> {
     Some(if to < from { -sum } else { sum })
 }
 
-/// The potential above the bottom of the well infinitely far away on one side, where the force dies away so fast that it is finite:
-/// the work over distances that double is then soon a geometric series, whose remainder is its last term times `q/(1 - q)`.
+/// The potential above the bottom of the well infinitely far away on one side, where the force dies
+/// away so fast that it is finite: the work over distances that double is then soon a geometric
+/// series, whose remainder is its last term times `q/(1 - q)`.
 fn rise_to_infinity(force: &Force, side: f64, unit: f64) -> Option<f64> {
     const DOUBLINGS: i32 = 1000;
-    /// Of the height: a remainder below this is rounding, one below the other is good enough where the force has no digits beyond.
+    /// Of the height: a remainder below this is rounding, one below the other is good enough where
+    /// the force has no digits beyond.
     const NEGLIGIBLE: f64 = 1e-14;
     const SMALL: f64 = 1e-8;
-    /// A quotient closer to one than this belongs to a potential that grows without end, as a logarithm, or may do so.
+    /// A quotient closer to one than this belongs to a potential that grows without end, as a
+    /// logarithm, or may do so.
     const CONVERGES: f64 = 0.97;
     /// The change of the quotient that still counts as settled.
     const SETTLED: f64 = 1e-4;
@@ -324,10 +365,12 @@ fn rise_to_infinity(force: &Force, side: f64, unit: f64) -> Option<f64> {
     (quotient < CONVERGES && rest < SMALL * sum).then_some(sum + rest)
 }
 
-/// The work towards a place where the force is infinite but its potential is not, as that of `1/sqrt(1 - x)` at 1, counted from
-/// the left: with the distance from there as the sixth power of a variable the integrand is bounded. `None` at a pole.
+/// The work towards a place where the force is infinite but its potential is not, as that of
+/// `1/sqrt(1 - x)` at 1, counted from the left: with the distance from there as the sixth power of
+/// a variable the integrand is bounded. `None` at a pole.
 fn towards_the_end(force: &Force, from: f64, to: f64) -> Option<f64> {
-    /// Closer than this, relatively, the distance is rounding, and what it would add below the tolerance.
+    /// Closer than this, relatively, the distance is rounding, and what it would add below the
+    /// tolerance.
     const CLOSEST: f64 = 1e-15;
     if force.is_pole(force.equilibrium() + to, to.abs()) {
         return None;
@@ -339,14 +382,17 @@ fn towards_the_end(force: &Force, from: f64, to: f64) -> Option<f64> {
     let work = match integrate_smooth(integrand, 0.0, 1.0, 1e-10) {
         Ok((value, _)) => value,
         Err(QuadratureError::NotConverged {
-            value, error_estimate, ..
+            value,
+            error_estimate,
+            ..
         }) if error_estimate < 1e-6 * value.abs() => value,
         Err(_) => return None,
     };
     Some(work * (from - to).abs())
 }
 
-/// The first place on one side where the force turns its sign or ends; infinity where its potential levels off.
+/// The first place on one side where the force turns its sign or ends; infinity where its potential
+/// levels off.
 fn rim(force: &Force, side: f64, unit: f64) -> Option<Wall> {
     let equilibrium = force.equilibrium();
     let pull = |distance: f64| side * force.at(side * distance);
@@ -377,14 +423,16 @@ fn rim(force: &Force, side: f64, unit: f64) -> Option<Wall> {
             return Some(Wall::new(equilibrium + side * next, false));
         }
         if !there.is_finite() && at_place {
-            // A corner at which the expression has no value, but the force goes on; a pole goes on as well, but is no corner.
+            // A corner at which the expression has no value, but the force goes on; a pole goes on
+            // as well, but is no corner.
             let [just_before, just_behind] = [next * (1.0 - 1e-12), next * (1.0 + 1e-12)];
             if pull(just_before) <= 1e3 * pull(distance) && pull(just_behind) > 0.0 {
                 distance = just_behind;
                 continue;
             }
         }
-        // A force that has grown beyond all numbers goes on, only not in numbers, as does one that dies away as a quotient of such.
+        // A force that has grown beyond all numbers goes on, only not in numbers, as does one that
+        // dies away as a quotient of such.
         if !there.is_finite() && (strongest > 1e250 || force.overflow(side * next).is_some()) {
             return levels_off(force, side, unit, pull(distance) / strongest);
         }
@@ -396,8 +444,11 @@ fn rim(force: &Force, side: f64, unit: f64) -> Option<Wall> {
         }
         if there <= 0.0 {
             // Below its rounding a force that dies away turns its sign without a zero.
-            let is_rounding = [distance, next].into_iter().all(|size| !force.has_digits(side * size));
-            let Some((size, separatrix)) = sign_change(&pull, distance, next, strongest).filter(|_| !is_rounding)
+            let is_rounding = [distance, next]
+                .into_iter()
+                .all(|size| !force.has_digits(side * size));
+            let Some((size, separatrix)) =
+                sign_change(&pull, distance, next, strongest).filter(|_| !is_rounding)
             else {
                 return levels_off(force, side, unit, there / strongest);
             };
@@ -412,10 +463,11 @@ fn rim(force: &Force, side: f64, unit: f64) -> Option<Wall> {
     levels_off(force, side, unit, pull(distance) / strongest)
 }
 
-/// Infinity as a rim, of a force that pulls back all the way with this part of its largest value in the end, where its potential is
-/// finite there.
+/// Infinity as a rim, of a force that pulls back all the way with this part of its largest value in
+/// the end, where its potential is finite there.
 fn levels_off(force: &Force, side: f64, unit: f64, weakened: f64) -> Option<Wall> {
-    /// A force that has not weakened by this over ten decades, a million units far, does not die away as fast as its inverse distance.
+    /// A force that has not weakened by this over ten decades, a million units far, does not die
+    /// away as fast as its inverse distance.
     const DIES_AWAY: f64 = 1e-3;
     if weakened.is_nan() || weakened.abs() > DIES_AWAY {
         return None;
@@ -427,14 +479,26 @@ fn levels_off(force: &Force, side: f64, unit: f64, weakened: f64) -> Option<Wall
     })
 }
 
-/// Where a force ends between a distance at which it has a value and one at which it has none, from outside.
+/// Where a force ends between a distance at which it has a value and one at which it has none, from
+/// outside.
 pub(super) fn end_of_force(pull: &dyn Fn(f64) -> f64, inside: f64, outside: f64) -> f64 {
-    let [_, end] = bisect(|size| pull(size).is_finite(), inside, outside, Until::Halvings(60));
+    let [_, end] = bisect(
+        |size| pull(size).is_finite(),
+        inside,
+        outside,
+        Until::Halvings(60),
+    );
     end
 }
 
-/// Where the force turns its sign between two distances, and whether through zero; `None` where it has only died away.
-pub(super) fn sign_change(pull: &dyn Fn(f64) -> f64, from: f64, to: f64, strongest: f64) -> Option<(f64, bool)> {
+/// Where the force turns its sign between two distances, and whether through zero; `None` where it
+/// has only died away.
+pub(super) fn sign_change(
+    pull: &dyn Fn(f64) -> f64,
+    from: f64,
+    to: f64,
+    strongest: f64,
+) -> Option<(f64, bool)> {
     let (before, there) = (pull(from), pull(to));
     // A force that has died away to nothing has no zero there.
     if there == 0.0 && before.abs() < 1e-100 * strongest {
@@ -445,9 +509,11 @@ pub(super) fn sign_change(pull: &dyn Fn(f64) -> f64, from: f64, to: f64, stronge
     } else {
         find_root(pull, from, to).ok()?
     };
-    // A change of sign by way of infinity is an end, not an equilibrium: next to it the force is far stronger than at the ends
-    // of the step.
-    let near = pull(size).abs().max(pull(size * (1.0 - 4.0 * f64::EPSILON)).abs());
+    // A change of sign by way of infinity is an end, not an equilibrium: next to it the force is
+    // far stronger than at the ends of the step.
+    let near = pull(size)
+        .abs()
+        .max(pull(size * (1.0 - 4.0 * f64::EPSILON)).abs());
     let through_zero = near <= 1e3 * before.abs().max(there.abs()).max(1e-300 * strongest);
     Some((size, through_zero))
 }
@@ -460,7 +526,14 @@ mod tests {
 
     fn ends(text: &str, amplitude: f64) -> (Option<f64>, Option<f64>, String) {
         let expression = parse_expression(text).unwrap();
-        let force = Force::new(&expression, "x".into(), &Expr::zero(), &BTreeMap::new(), amplitude).unwrap();
+        let force = Force::new(
+            &expression,
+            "x".into(),
+            &Expr::zero(),
+            &BTreeMap::new(),
+            amplitude,
+        )
+        .unwrap();
         let well = Well::new(&force, amplitude);
         let Some(well) = well else {
             return (None, None, String::new());
@@ -480,7 +553,8 @@ mod tests {
             for amplitude in [0.1, -0.3, 0.125, -0.25, 1e-6] {
                 let (found_low, found_high, words) = ends(text, amplitude);
                 assert!(
-                    (found_low.unwrap() - low).abs() < 1e-7 && (found_high.unwrap() - high).abs() < 1e-7,
+                    (found_low.unwrap() - low).abs() < 1e-7
+                        && (found_high.unwrap() - high).abs() < 1e-7,
                     "{words}"
                 );
                 assert!(
@@ -494,8 +568,14 @@ mod tests {
             "periodic for |A| < 1: the separatrix passes the unstable equilibrium x = 1"
         );
         let (low, high, words) = ends("x/(1 - x)^2", 0.1);
-        assert!(low.is_none() && (high.unwrap() - 1.0).abs() < 1e-9, "{words}");
-        assert!(words.contains("periodic for A < 1: the force ends at x = 1"), "{words}");
+        assert!(
+            low.is_none() && (high.unwrap() - 1.0).abs() < 1e-9,
+            "{words}"
+        );
+        assert!(
+            words.contains("periodic for A < 1: the force ends at x = 1"),
+            "{words}"
+        );
         assert_eq!(ends("x + x^3", 1.0), (None, None, String::new()));
         assert_eq!(ends("x*exp(-x^2)", 1.0).2, "");
     }
@@ -503,13 +583,21 @@ mod tests {
     #[test]
     fn both_ends_are_in_the_words() {
         for (text, amplitude, words) in [
-            ("x/(1 - x^2)^2", 0.5, "periodic for |A| < 1: the force ends at x = 1"),
+            (
+                "x/(1 - x^2)^2",
+                0.5,
+                "periodic for |A| < 1: the force ends at x = 1",
+            ),
             (
                 "sin(3*x)",
                 -0.1,
                 "periodic for |A| < 1.0472: the separatrix passes the unstable equilibrium x = 1.0472",
             ),
-            ("x/(1 + x)^2", 0.1, "periodic for A > -1: the force ends at x = -1"),
+            (
+                "x/(1 + x)^2",
+                0.1,
+                "periodic for A > -1: the force ends at x = -1",
+            ),
             // V = 4/3 - 2 u + 2 u^3/3 with u^2 = 1 - x: the end at 1 is reached from u^2 = 3.
             (
                 "x/(1 - x)^(1/2)",
@@ -530,7 +618,8 @@ mod tests {
         }
     }
 
-    /// A force that has grown beyond all numbers has not ended: no rim is claimed where double precision gives out.
+    /// A force that has grown beyond all numbers has not ended: no rim is claimed where double
+    /// precision gives out.
     #[test]
     fn an_overflow_is_no_end() {
         for (text, amplitude) in [

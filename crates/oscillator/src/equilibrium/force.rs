@@ -1,7 +1,8 @@
 //! The force of the position alone: whether it rests at zero, and where else.
 //!
-//! In: a force and its coordinate, with letters or without. Out: its stable equilibria, by closed forms where there are some, chosen with
-//! numbers in place of the letters, or by numbers; the names of them, for messages.
+//! In: a force and its coordinate, with letters or without. Out: its stable equilibria, by closed
+//! forms where there are some, chosen with numbers in place of the letters, or by numbers; the
+//! names of them, for messages.
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -27,13 +28,16 @@ use crate::symbol::Symbol;
 /// How a force that is infinite at `x = 0` pulls towards it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pull {
-    /// So weakly that its potential is finite there, as `sgn(x)/abs(x)^(1/3)`: the motion swings through.
+    /// So weakly that its potential is finite there, as `sgn(x)/abs(x)^(1/3)`: the motion swings
+    /// through.
     Passed,
-    /// As `1/x`, and oddly: the potential is that of a logarithm, and the motion the limit of those of weaker powers, which swing through.
+    /// As `1/x`, and oddly: the potential is that of a logarithm, and the motion the limit of those
+    /// of weaker powers, which swing through.
     Inverse,
     /// As `1/x`, but with an even part.
     UnevenInverse,
-    /// Faster than `1/x`: whatever falls in gains energy as a power of the distance, and nothing says how it would come out.
+    /// Faster than `1/x`: whatever falls in gains energy as a power of the distance, and nothing
+    /// says how it would come out.
     Endless,
 }
 
@@ -66,10 +70,12 @@ impl<'a> Force<'a> {
         at_zero.unwrap_or_else(|| self.force.clone()).to_string()
     }
 
-    /// Numbers in place of the parameters to choose between closed forms: all about equal, small first; and one of them much smaller or
-    /// larger than the others, as the load may be.
+    /// Numbers in place of the parameters to choose between closed forms: all about equal, small
+    /// first; and one of them much smaller or larger than the others, as the load may be.
     fn samples(&self) -> Vec<BTreeMap<Symbol, f64>> {
-        let mut samples = [0.1, 0.01, 1.0, 0.001, 10.0].map(|scale| self.sample(scale)).to_vec();
+        let mut samples = [0.1, 0.01, 1.0, 0.001, 10.0]
+            .map(|scale| self.sample(scale))
+            .to_vec();
         let alike = self.sample(1.0);
         for factor in [0.03, 30.0] {
             let unlike = |name: &Symbol| {
@@ -84,7 +90,11 @@ impl<'a> Force<'a> {
 
     /// Numbers for the parameters, all about equal to `scale`.
     fn sample(&self, scale: f64) -> BTreeMap<Symbol, f64> {
-        let parameters = self.force.symbols().into_iter().filter(|name| *name != self.coordinate);
+        let parameters = self
+            .force
+            .symbols()
+            .into_iter()
+            .filter(|name| *name != self.coordinate);
         let values = (1..).map(|k| scale * (1.0 + 0.03 * f64::from(k)));
         parameters.zip(values).collect()
     }
@@ -114,12 +124,15 @@ impl<'a> Force<'a> {
         })
     }
 
-    /// How a force that is infinite at zero pulls towards it from both sides; `None` where it does not.
+    /// How a force that is infinite at zero pulls towards it from both sides; `None` where it does
+    /// not.
     pub(super) fn pull_without_bound(&self) -> Option<Pull> {
-        /// Two exponents that differ by less than this are the same: over seventy decades rounding makes one of 1e-17.
+        /// Two exponents that differ by less than this are the same: over seventy decades rounding
+        /// makes one of 1e-17.
         const SAME: f64 = 1e-12;
         let value = self.at_numbers(&self.sample(1.0))?;
-        // By how much force times distance falls from far to near, in decades a decade: p + 1 of a power p.
+        // By how much force times distance falls from far to near, in decades a decade: p + 1 of a
+        // power p.
         let falls = |side: f64| {
             let work = |decade: i32| {
                 let distance = 10.0_f64.powi(-decade);
@@ -137,7 +150,8 @@ impl<'a> Force<'a> {
         })
     }
 
-    /// Whether the force, zero at `x = 0`, pulls back there; a parameter is given the benefit of the doubt.
+    /// Whether the force, zero at `x = 0`, pulls back there; a parameter is given the benefit of
+    /// the doubt.
     pub(super) fn is_stable_at_zero(&self) -> bool {
         let origin = [(self.coordinate, Rational::zero())];
         for degree in [1, 3, 5, 9, 15] {
@@ -146,19 +160,26 @@ impl<'a> Force<'a> {
             };
             let coefficient = |part: &Expr| part.substitute(self.coordinate, &Expr::one()).ok();
             let lowest = parts.iter().enumerate().skip(1).find_map(|(power, part)| {
-                let coefficient = coefficient(part).filter(|coefficient| !is_nothing(coefficient))?;
+                let coefficient =
+                    coefficient(part).filter(|coefficient| !is_nothing(coefficient))?;
                 Some((power, coefficient))
             });
             if let Some((power, coefficient)) = lowest {
-                let negative = coefficient.evaluate(&BTreeMap::new()).is_ok_and(|value| value < 0.0);
+                let negative = coefficient
+                    .evaluate(&BTreeMap::new())
+                    .is_ok_and(|value| value < 0.0);
                 return power % 2 == 1 && !negative;
             }
         }
         // Without a Taylor series, or flat: the first force that is felt on either side.
-        let Some(value) = &self.value else { return true };
+        let Some(value) = &self.value else {
+            return true;
+        };
         let felt = |side: f64| {
             let places = (-1200..1200).map(|k| side * 10_f64.powf(f64::from(k) / 40.0));
-            let mut forces = places.map(|x| value.call(&[x])).take_while(|force| force.is_finite());
+            let mut forces = places
+                .map(|x| value.call(&[x]))
+                .take_while(|force| force.is_finite());
             forces.find(|force| *force != 0.0).unwrap_or(0.0)
         };
         felt(1.0) > 0.0 && felt(-1.0) < 0.0
@@ -168,10 +189,15 @@ impl<'a> Force<'a> {
     pub(super) fn signs(&self) -> Vec<SignChange> {
         /// Fractions grow with every division of the exact polynomials.
         const LONGEST_EXACT: usize = 32;
-        let Some(function) = &self.value else { return vec![] };
+        let Some(function) = &self.value else {
+            return vec![];
+        };
         let coefficients = coefficients(self.force, self.coordinate);
         let numbers = coefficients.and_then(|coefficients| {
-            let exact: Option<Vec<Rational>> = coefficients.iter().map(|each| each.as_number().cloned()).collect();
+            let exact: Option<Vec<Rational>> = coefficients
+                .iter()
+                .map(|each| each.as_number().cloned())
+                .collect();
             // A multiple zero of rounded coefficients would be many zeros near it.
             if let Some(exact) = exact.filter(|exact| exact.len() <= LONGEST_EXACT) {
                 return Some(sign_changing_part(&exact).iter().map(to_f64).collect());
@@ -192,16 +218,23 @@ impl<'a> Force<'a> {
         zeros(&|x| function.call(&[x]), &centres)
     }
 
-    /// The stable equilibria, the nearest first; those that a pole hides only where there are no others.
+    /// The stable equilibria, the nearest first; those that a pole hides only where there are no
+    /// others.
     pub(super) fn stable(&self) -> Vec<SignChange> {
-        let mut found: Vec<SignChange> = self.signs().into_iter().filter(|found| found.stable).collect();
+        let mut found: Vec<SignChange> = self
+            .signs()
+            .into_iter()
+            .filter(|found| found.stable)
+            .collect();
         if found.iter().any(|found| found.reachable) {
             found.retain(|found| found.reachable);
         }
         // Of two mirror images the positive one, though rounding may put it farther away.
         found.sort_by(|a, b| {
             let size = |found: &SignChange| found.position.abs() as f32;
-            size(a).total_cmp(&size(b)).then(b.position.total_cmp(&a.position))
+            size(a)
+                .total_cmp(&size(b))
+                .then(b.position.total_cmp(&a.position))
         });
         found
     }
@@ -229,8 +262,8 @@ impl<'a> Force<'a> {
         }
     }
 
-    /// The closed form of the stable equilibrium in the parameters, chosen where loads are small, and where no pole hides it if that
-    /// can be.
+    /// The closed form of the stable equilibrium in the parameters, chosen where loads are small,
+    /// and where no pole hides it if that can be.
     pub(super) fn stable_closed_form(&self) -> Option<Place> {
         let forms = self.forms();
         let samples = self.samples();
@@ -246,17 +279,23 @@ impl<'a> Force<'a> {
         Some(Place::Exact(form))
     }
 
-    /// Whether the force has no value somewhere between zero and a position, with these numbers for its parameters.
+    /// Whether the force has no value somewhere between zero and a position, with these numbers for
+    /// its parameters.
     fn is_hidden(&self, position: f64, sample: &BTreeMap<Symbol, f64>) -> bool {
         let Some(value) = self.at_numbers(sample) else {
             return false;
         };
         let places = linear_zeros(self.force, self.coordinate);
-        let mut places = places.iter().filter_map(|place| place.evaluate(sample).ok());
-        places.any(|place| place / position > 0.0 && place / position < 1.0 && !value(place).is_finite())
+        let mut places = places
+            .iter()
+            .filter_map(|place| place.evaluate(sample).ok());
+        places.any(|place| {
+            place / position > 0.0 && place / position < 1.0 && !value(place).is_finite()
+        })
     }
 
-    /// The forms at which the force pulls back with these numbers for its parameters, and their values.
+    /// The forms at which the force pulls back with these numbers for its parameters, and their
+    /// values.
     fn stable_at(&self, forms: &[Expr], sample: &BTreeMap<Symbol, f64>) -> Vec<(f64, Expr)> {
         let Some(value) = self.at_numbers(sample) else {
             return vec![];
@@ -270,7 +309,8 @@ impl<'a> Force<'a> {
         forms.iter().filter_map(stable).collect()
     }
 
-    /// The stable equilibrium in the parameters that has the value asked for whatever they are, however that is written.
+    /// The stable equilibrium in the parameters that has the value asked for whatever they are,
+    /// however that is written.
     pub(super) fn stable_form_of(&self, asked: &Expr) -> Option<Expr> {
         if self.value.is_some() {
             return None;
@@ -278,9 +318,9 @@ impl<'a> Force<'a> {
         let forms = self.forms();
         let samples = self.samples();
         let same = |form: &&Expr| {
-            let pairs = samples
-                .iter()
-                .filter_map(|sample| Some((form.evaluate(sample).ok()?, asked.evaluate(sample).ok()?)));
+            let pairs = samples.iter().filter_map(|sample| {
+                Some((form.evaluate(sample).ok()?, asked.evaluate(sample).ok()?))
+            });
             let pairs: Vec<(f64, f64)> = pairs.collect();
             !pairs.is_empty()
                 && pairs
@@ -288,11 +328,16 @@ impl<'a> Force<'a> {
                     .all(|(one, other)| (one - other).abs() <= 1e-12 * one.abs())
         };
         let form = forms.iter().find(same)?;
-        let is_stable = |sample| !self.stable_at(std::slice::from_ref(form), sample).is_empty();
+        let is_stable = |sample| {
+            !self
+                .stable_at(std::slice::from_ref(form), sample)
+                .is_empty()
+        };
         samples.iter().any(is_stable).then(|| form.clone())
     }
 
-    /// The refusal of `x = 0`; with the motions through it as a way forward, where the force is all that there is and has such.
+    /// The refusal of `x = 0`; with the motions through it as a way forward, where the force is all
+    /// that there is and has such.
     pub(super) fn unstable(&self, conservative: bool) -> OscillatorError {
         OscillatorError::Unstable {
             coordinate: self.coordinate,
@@ -301,10 +346,12 @@ impl<'a> Force<'a> {
         }
     }
 
-    /// The motions through zero that run over the wells on both sides of it, where it is a hilltop between them; `position` is
-    /// where zero is. With letters it is one where it is for positive ones of all sizes.
+    /// The motions through zero that run over the wells on both sides of it, where it is a hilltop
+    /// between them; `position` is where zero is. With letters it is one where it is for positive
+    /// ones of all sizes.
     pub(super) fn cross_well(&self, position: &Expr) -> Option<CrossWell> {
-        /// How far a closed form may be from the number found: that is good to the quadrature of the energy.
+        /// How far a closed form may be from the number found: that is good to the quadrature of
+        /// the energy.
         const AGREEMENT: f64 = 1e-7;
         let samples = match self.value {
             Some(_) => vec![BTreeMap::new()],
@@ -322,8 +369,12 @@ impl<'a> Force<'a> {
             return None;
         }
         let rest = Expr::zero();
-        let at = |sample: &BTreeMap<Symbol, f64>| AtNumbers::new(self.force, self.coordinate, &rest, sample, unit);
-        let away = |sample: &BTreeMap<Symbol, f64>| at(sample).is_some_and(|force| pushes_away(&force, unit));
+        let at = |sample: &BTreeMap<Symbol, f64>| {
+            AtNumbers::new(self.force, self.coordinate, &rest, sample, unit)
+        };
+        let away = |sample: &BTreeMap<Symbol, f64>| {
+            at(sample).is_some_and(|force| pushes_away(&force, unit))
+        };
         if !samples.iter().all(away) || !is_odd(self.force, self.coordinate).unwrap_or(false) {
             return None;
         }
@@ -344,13 +395,19 @@ impl<'a> Force<'a> {
                 value.is_ok_and(|value| (value - range.from).abs() <= AGREEMENT * range.from)
             })
         };
-        let from = self.edges(first.from).into_iter().find(fits).map(Position::Exact);
+        let from = self
+            .edges(first.from)
+            .into_iter()
+            .find(fits)
+            .map(Position::Exact);
         let from = from.or_else(|| self.value.is_some().then_some(Position::Number(first.from)));
         let to = match (first.to, self.value.is_some()) {
-            (Some(rim), true) => CrossWellEnd::At(match exact_zero(self.force, self.coordinate, rim.place) {
-                Some(exact) if rim.separatrix => Position::Exact(exact),
-                _ => Position::Number(rim.place),
-            }),
+            (Some(rim), true) => {
+                CrossWellEnd::At(match exact_zero(self.force, self.coordinate, rim.place) {
+                    Some(exact) if rim.separatrix => Position::Exact(exact),
+                    _ => Position::Number(rim.place),
+                })
+            }
             (None, true) => CrossWellEnd::Never,
             (_, false) if found.iter().any(|entry| entry.1.to.is_some()) => CrossWellEnd::Somewhere,
             (_, false) => CrossWellEnd::Never,
@@ -367,7 +424,8 @@ impl<'a> Force<'a> {
         })
     }
 
-    /// What the amplitude may be at which the potential is again that at zero: `near` is its value for numbers.
+    /// What the amplitude may be at which the potential is again that at zero: `near` is its value
+    /// for numbers.
     fn edges(&self, near: f64) -> Vec<Expr> {
         let x = self.coordinate;
         let risen = || {
@@ -403,8 +461,14 @@ impl<'a> Force<'a> {
         let half = period
             .as_ref()
             .and_then(|period| period.evaluate(&BTreeMap::new()).ok());
-        let near = |position: &f64| half.is_none_or(|period| position.abs() <= 0.5 * period * (1.0 + 1e-9));
-        let mut positions: Vec<f64> = self.stable().into_iter().map(|found| found.position).collect();
+        let near = |position: &f64| {
+            half.is_none_or(|period| position.abs() <= 0.5 * period * (1.0 + 1e-9))
+        };
+        let mut positions: Vec<f64> = self
+            .stable()
+            .into_iter()
+            .map(|found| found.position)
+            .collect();
         positions.retain(near);
         let more = positions.len() > MOST;
         positions.truncate(MOST);
@@ -427,7 +491,8 @@ impl<'a> Force<'a> {
     fn period(&self) -> Option<Expr> {
         let mut slopes: Vec<Rational> = Vec::new();
         let collected = self.force.fold(|expr, _: &[()]| {
-            if let Node::Function(Function::Sin | Function::Cos | Function::Tan, arguments) = expr.node()
+            if let Node::Function(Function::Sin | Function::Cos | Function::Tan, arguments) =
+                expr.node()
                 && let Some(slope) = arguments
                     .first()
                     .and_then(|angle| angle.differentiate(self.coordinate).ok())
@@ -455,12 +520,15 @@ fn is_nothing(coefficient: &Expr) -> bool {
     let Ok(expanded) = coefficient.expand() else {
         return false;
     };
-    let values = expanded.terms().iter().map(|term| term.evaluate(&BTreeMap::new()));
+    let values = expanded
+        .terms()
+        .iter()
+        .map(|term| term.evaluate(&BTreeMap::new()));
     let Ok(values) = values.collect::<Result<Vec<f64>, _>>() else {
         return expanded.is_zero();
     };
-    let (sum, size) = values
-        .iter()
-        .fold((0.0, 0.0), |(sum, size), value| (sum + value, size + value.abs()));
+    let (sum, size) = values.iter().fold((0.0, 0.0), |(sum, size), value| {
+        (sum + value, size + value.abs())
+    });
     f64::abs(sum) <= 1e-14 * size
 }

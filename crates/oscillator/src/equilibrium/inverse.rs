@@ -1,7 +1,9 @@
-//! Zeros of a force with letters that are found by inverting it: the coordinate stands in one place, or in the sine and cosine of one
-//! angle, or the force is a polynomial of third degree in it, in a power of it or in an exponential.
+//! Zeros of a force with letters that are found by inverting it: the coordinate stands in one
+//! place, or in the sine and cosine of one angle, or the force is a polynomial of third degree in
+//! it, in a power of it or in an exponential.
 //!
-//! References: NIST Digital Library of Mathematical Functions 1.11(iii) (Cardano), 4.43 (Viete), 4.21 and 4.23 (angles).
+//! References: NIST Digital Library of Mathematical Functions 1.11(iii) (Cardano), 4.43
+//! (Viete), 4.21 and 4.23 (angles).
 //!
 //! ```text
 //! c h(u) = r                      u = h^-1(r/c), and so on to x
@@ -12,8 +14,8 @@
 //!                                 x = 2 sqrt(-p/3) cos(acos(3 q sqrt(-3/p)/(2 p))/3 - 2 pi k/3)           three
 //! ```
 //!
-//! Which of them is real depends on the values of the letters, and is left to who puts some in. In: a force and its coordinate. Out:
-//! candidates, some of which may be zeros for no values at all.
+//! Which of them is real depends on the values of the letters, and is left to who puts some in. In:
+//! a force and its coordinate. Out: candidates, some of which may be zeros for no values at all.
 
 use num_integer::Integer as _;
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -37,14 +39,24 @@ fn zeros(expression: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     if let Some((slope, constant)) = linear_in(expression, x) {
         return Ok(vec![Expr::divide(&-constant, &slope)?]);
     }
-    let (moving, still): (Vec<Expr>, Vec<Expr>) = expression.terms().iter().cloned().partition(|term| term.contains(x));
+    let (moving, still): (Vec<Expr>, Vec<Expr>) = expression
+        .terms()
+        .iter()
+        .cloned()
+        .partition(|term| term.contains(x));
     let other_side = -Expr::sum(still);
     if let ([product], true) = (moving.as_slice(), other_side.is_zero()) {
-        let factors = product.factors().1.iter().filter(|factor| factor.contains(x));
+        let factors = product
+            .factors()
+            .1
+            .iter()
+            .filter(|factor| factor.contains(x));
         let factors: Vec<&Expr> = factors.collect();
         if factors.len() > 1 {
             // A factor such as 1/x is never zero.
-            let found = factors.into_iter().map(|factor| zeros(factor, x).unwrap_or_default());
+            let found = factors
+                .into_iter()
+                .map(|factor| zeros(factor, x).unwrap_or_default());
             return Ok(found.flatten().collect());
         }
     }
@@ -67,10 +79,16 @@ fn zeros(expression: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
 /// A term as what does not move times the one factor that does.
 fn split(term: &Expr, x: Symbol) -> Option<(Expr, Expr)> {
     let (number, factors) = term.factors();
-    let (moving, still): (Vec<&Expr>, Vec<&Expr>) = factors.iter().partition(|factor| factor.contains(x));
-    let [moving] = moving.as_slice() else { return None };
+    let (moving, still): (Vec<&Expr>, Vec<&Expr>) =
+        factors.iter().partition(|factor| factor.contains(x));
+    let [moving] = moving.as_slice() else {
+        return None;
+    };
     let still = still.into_iter().cloned();
-    Some((Expr::product(still.chain([Expr::number(number)])), (*moving).clone()))
+    Some((
+        Expr::product(still.chain([Expr::number(number)])),
+        (*moving).clone(),
+    ))
 }
 
 /// Where `function` has the value `y`.
@@ -81,7 +99,9 @@ fn before(function: &Expr, y: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> 
     let (inner, values) = match function.node() {
         Node::Power(base, exponent) if !exponent.contains(x) => {
             let root = Expr::power(y, &Expr::divide(&Expr::one(), exponent)?)?;
-            let even = exponent.as_number().is_some_and(|exponent| !exponent.numer().is_odd());
+            let even = exponent
+                .as_number()
+                .is_some_and(|exponent| !exponent.numer().is_odd());
             (base, if even { both(root) } else { vec![root] })
         }
         Node::Function(name, arguments) => {
@@ -120,7 +140,10 @@ fn before(function: &Expr, y: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> 
 
 /// Where `inner` has one of these values.
 fn through(inner: &Expr, values: Vec<Expr>, x: Symbol) -> Result<Vec<Expr>, ExprError> {
-    let found: Result<Vec<Vec<Expr>>, ExprError> = values.iter().map(|value| zeros(&(inner - value), x)).collect();
+    let found: Result<Vec<Vec<Expr>>, ExprError> = values
+        .iter()
+        .map(|value| zeros(&(inner - value), x))
+        .collect();
     Ok(found?.into_iter().flatten().collect())
 }
 
@@ -165,13 +188,18 @@ fn of_polynomial(expression: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
         Some([d, c, b, a]) => cubic_roots(a, b, c, d),
         Some([d, between @ .., a]) if !between.is_empty() && between.iter().all(Expr::is_zero) => {
             let degree = Expr::from(between.len() as i64 + 1);
-            before(&Expr::power(&Expr::from(x), &degree)?, &Expr::divide(&-d, a)?, x)
+            before(
+                &Expr::power(&Expr::from(x), &degree)?,
+                &Expr::divide(&-d, a)?,
+                x,
+            )
         }
         _ => Ok(vec![]),
     }
 }
 
-/// Where a sum of powers of one base, or of exponentials, has the value `r`: they are a polynomial in one of them, up to a factor.
+/// Where a sum of powers of one base, or of exponentials, has the value `r`: they are a polynomial
+/// in one of them, up to a factor.
 fn of_powers(parts: &[(Expr, Expr)], r: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     let powers: Option<Vec<Vec<Power>>> = parts.iter().map(|part| powers(part, x)).collect();
     let powers = powers.unwrap_or_default().concat();
@@ -187,7 +215,9 @@ fn of_powers(parts: &[(Expr, Expr)], r: &Expr, x: Symbol) -> Result<Vec<Expr>, E
         .iter()
         .map(|power| (power.exponent.clone(), power.factor.clone()));
     let terms: Vec<(Expr, Expr)> = terms.chain(constant).collect();
-    let steps = terms.iter().map(|(exponent, _)| (exponent - &first.exponent).expand());
+    let steps = terms
+        .iter()
+        .map(|(exponent, _)| (exponent - &first.exponent).expand());
     let steps = steps.collect::<Result<Vec<Expr>, ExprError>>()?;
     let Some(step) = steps.iter().find(|step| !step.is_zero()) else {
         return Ok(vec![]);
@@ -218,7 +248,10 @@ fn of_powers(parts: &[(Expr, Expr)], r: &Expr, x: Symbol) -> Result<Vec<Expr>, E
         Some(base) => Expr::power(base, &exponent)?,
         None => Expr::function(Function::Exp, vec![exponent])?,
     };
-    let found: Result<Vec<Vec<Expr>>, ExprError> = roots.iter().map(|root| before(&function, root, x)).collect();
+    let found: Result<Vec<Vec<Expr>>, ExprError> = roots
+        .iter()
+        .map(|root| before(&function, root, x))
+        .collect();
     Ok(found?.into_iter().flatten().collect())
 }
 
@@ -251,7 +284,11 @@ fn powers((factor, function): &(Expr, Expr), x: Symbol) -> Option<Vec<Power>> {
                 return Some(vec![exponential(factor.clone(), exponent)]);
             }
             Function::Sinh | Function::Cosh if exponent.is_one() => {
-                let other = if *name == Function::Sinh { -half() } else { half() };
+                let other = if *name == Function::Sinh {
+                    -half()
+                } else {
+                    half()
+                };
                 return Some(vec![
                     exponential(half(), argument.clone()),
                     exponential(other, -argument),
@@ -267,39 +304,46 @@ fn powers((factor, function): &(Expr, Expr), x: Symbol) -> Option<Vec<Power>> {
     }])
 }
 
-/// Coefficients at places that are no whole numbers as those of a polynomial: its unit, and all coefficients from the lowest on; nothing
-/// beyond the third degree.
+/// Coefficients at places that are no whole numbers as those of a polynomial: its unit, and all
+/// coefficients from the lowest on; nothing beyond the third degree.
 fn polynomial_of(places: &[(Rational, Expr)]) -> Option<(Rational, Vec<Expr>)> {
     const DEGREE: usize = 3;
     let lowest = places.iter().map(|place| &place.0).min()?;
     let apart: Vec<Rational> = places.iter().map(|place| &place.0 - lowest).collect();
-    let unit = apart
-        .iter()
-        .filter(|apart| !apart.is_zero())
-        .fold(None, |unit: Option<Rational>, apart| {
-            let Some(unit) = unit else { return Some(apart.clone()) };
+    let unit = apart.iter().filter(|apart| !apart.is_zero()).fold(
+        None,
+        |unit: Option<Rational>, apart| {
+            let Some(unit) = unit else {
+                return Some(apart.clone());
+            };
             let over = unit.denom() * apart.denom();
             let numerator = (unit.numer() * apart.denom()).gcd(&(apart.numer() * unit.denom()));
             Some(Rational::new(numerator, over))
-        })?;
+        },
+    )?;
     let mut coefficients = vec![Expr::zero(); DEGREE + 1];
     for (apart, (_, factor)) in apart.iter().zip(places) {
         let degree = (apart / &unit).to_integer().to_usize()?;
         let coefficient = coefficients.get_mut(degree)?;
         *coefficient = &*coefficient + factor;
     }
-    let length = coefficients.iter().rposition(|coefficient| !coefficient.is_zero())? + 1;
+    let length = coefficients
+        .iter()
+        .rposition(|coefficient| !coefficient.is_zero())?
+        + 1;
     coefficients.truncate(length);
     Some((unit, coefficients))
 }
 
-/// The roots of `a x^3 + b x^2 + c x + d`, first the one that is the only real one where it has a value.
+/// The roots of `a x^3 + b x^2 + c x + d`, first the one that is the only real one where it has a
+/// value.
 fn cubic_roots(a: &Expr, b: &Expr, c: &Expr, d: &Expr) -> Result<Vec<Expr>, ExprError> {
     let third = |expr: &Expr, power: i64| Ok::<_, ExprError>(Expr::number(ratio(1, power)) * expr);
     let [b, c, d] = [b, c, d].map(|coefficient| Expr::divide(coefficient, a));
     let (b, c, d) = (b?, c?, d?);
     let p = (&c - &third(&b.integer_power(2)?, 3)?).expand()?;
-    let q = (third(&b.integer_power(3)?, 27)? * Expr::from(2) - third(&(&b * &c), 3)? + d).expand()?;
+    let q =
+        (third(&b.integer_power(3)?, 27)? * Expr::from(2) - third(&(&b * &c), 3)? + d).expand()?;
     let shift = third(&b, 3)?;
     if p.is_zero() {
         let root = Expr::power(&-q, &Expr::number(ratio(1, 3)))?;
@@ -329,7 +373,10 @@ fn cubic_roots(a: &Expr, b: &Expr, c: &Expr, d: &Expr) -> Result<Vec<Expr>, Expr
         }
     }
     let signed = |root: Expr| if negative { -root } else { root };
-    Ok(roots.into_iter().map(|root| signed(root) - shift.clone()).collect())
+    Ok(roots
+        .into_iter()
+        .map(|root| signed(root) - shift.clone())
+        .collect())
 }
 
 #[cfg(test)]
@@ -338,7 +385,8 @@ mod tests {
 
     use super::*;
 
-    /// What is put in for the letters, and how many places have a value there: each has to be a zero of the force.
+    /// What is put in for the letters, and how many places have a value there: each has to be a
+    /// zero of the force.
     #[test]
     fn every_real_candidate_is_a_zero() {
         let table = [
@@ -373,13 +421,25 @@ mod tests {
             ("x - k/(1 - x)^2", vec![("k", 0.2)], 1),
             ("b*x^3 - x + k", vec![("k", 0.1), ("b", 0.7)], 3),
             ("log(k*exp(x^3 + x - c))", vec![("k", 0.1), ("c", 0.7)], 1),
-            ("24*e*(s^6/x^7 - 2*s^12/x^13)", vec![("e", 0.1), ("s", 0.7)], 2),
+            (
+                "24*e*(s^6/x^7 - 2*s^12/x^13)",
+                vec![("e", 0.1), ("s", 0.7)],
+                2,
+            ),
             ("-p*(x^(-3*k) - 1)/x", vec![("p", 2.0), ("k", 1.4)], 1),
             ("p*x^(-3*k) - p*x^(-k)", vec![("p", 2.0), ("k", 1.4)], 1),
-            ("b/x^m - c/x^n", vec![("b", 2.0), ("c", 3.0), ("m", 4.0), ("n", 9.0)], 1),
+            (
+                "b/x^m - c/x^n",
+                vec![("b", 2.0), ("c", 3.0), ("m", 4.0), ("n", 9.0)],
+                1,
+            ),
             ("x^(1/3) + b*x^(2/3) - k", vec![("b", 2.0), ("k", 3.0)], 2),
             ("exp(x) - k*exp(-x)", vec![("k", 2.0)], 1),
-            ("exp(2*b*x) - k*exp(b*x) + 1", vec![("k", 3.0), ("b", 2.0)], 2),
+            (
+                "exp(2*b*x) - k*exp(b*x) + 1",
+                vec![("k", 3.0), ("b", 2.0)],
+                2,
+            ),
             ("exp(x)^2 - k*exp(-x/3)", vec![("k", 2.0)], 1),
             ("sinh(x) - k*cosh(x)", vec![("k", -0.7)], 1),
             (
@@ -393,11 +453,15 @@ mod tests {
         ];
         for (text, numbers, count) in table {
             let force: Expr = text.parse().unwrap();
-            let numbers: BTreeMap<Symbol, f64> =
-                numbers.into_iter().map(|(name, value)| (name.into(), value)).collect();
+            let numbers: BTreeMap<Symbol, f64> = numbers
+                .into_iter()
+                .map(|(name, value)| (name.into(), value))
+                .collect();
             let mut real: Vec<f64> = Vec::new();
             for form in inverted(&force, "x".into()) {
-                let Ok(place) = form.evaluate(&numbers) else { continue };
+                let Ok(place) = form.evaluate(&numbers) else {
+                    continue;
+                };
                 let mut there = numbers.clone();
                 there.insert("x".into(), place);
                 let size = 1.0 + numbers.values().map(|value| value.abs()).sum::<f64>();
@@ -408,7 +472,10 @@ mod tests {
                 if value.abs() < 1e-13 * size {
                     real.push(place);
                 } else {
-                    assert!(text.starts_with("a*sin(3*x)"), "{text} at {form} = {place}: {value}");
+                    assert!(
+                        text.starts_with("a*sin(3*x)"),
+                        "{text} at {form} = {place}: {value}"
+                    );
                 }
             }
             real.sort_by(f64::total_cmp);

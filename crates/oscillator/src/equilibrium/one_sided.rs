@@ -1,4 +1,5 @@
-//! A root that is real on one side of rest alone, as that of `x^1.5`: on the other there is no force, and nothing pulls back.
+//! A root that is real on one side of rest alone, as that of `x^1.5`: on the other there is no
+//! force, and nothing pulls back.
 
 use num_integer::Integer as _;
 use num_traits::Zero;
@@ -11,8 +12,8 @@ use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::taylor::taylor;
 use crate::symbol::Symbol;
 
-/// The refusal of a force that has a value on one side of `x = 0` alone; letters inside its root are taken to be positive. `None` where no
-/// root of it begins there.
+/// The refusal of a force that has a value on one side of `x = 0` alone; letters inside its root
+/// are taken to be positive. `None` where no root of it begins there.
 pub(super) fn refusal(oscillator: &Oscillator, force: &Expr) -> Option<OscillatorError> {
     let coordinate = oscillator.coordinate;
     let mut found = None;
@@ -23,7 +24,11 @@ pub(super) fn refusal(oscillator: &Oscillator, force: &Expr) -> Option<Oscillato
         Ok::<(), std::convert::Infallible>(())
     });
     let root = found?;
-    let side = if begins_at_zero(&root, coordinate)? { '<' } else { '>' };
+    let side = if begins_at_zero(&root, coordinate)? {
+        '<'
+    } else {
+        '>'
+    };
     let (base, exponent) = root.base_and_exponent();
     let exponent = exponent.as_number()?.clone();
     let contains = |expr: &Expr| {
@@ -58,8 +63,8 @@ pub(super) fn refusal(oscillator: &Oscillator, force: &Expr) -> Option<Oscillato
     })
 }
 
-/// Whether an even root of something that changes its sign at zero is real for positive `x`, or else for negative; `None` for anything
-/// else.
+/// Whether an even root of something that changes its sign at zero is real for positive `x`, or
+/// else for negative; `None` for anything else.
 fn begins_at_zero(expr: &Expr, coordinate: Symbol) -> Option<bool> {
     const DEGREE: u32 = 5;
     let Node::Power(base, exponent) = expr.node() else {
@@ -71,7 +76,11 @@ fn begins_at_zero(expr: &Expr, coordinate: Symbol) -> Option<bool> {
     let parts = taylor(base, &[(coordinate, Rational::zero())], DEGREE).ok()?;
     let (power, lowest) = parts.iter().enumerate().find(|(_, part)| !part.is_zero())?;
     let coefficient = lowest.substitute(coordinate, &Expr::one()).ok()?;
-    let letters = coefficient.symbols().into_iter().map(|name| (name, 1.0)).collect();
+    let letters = coefficient
+        .symbols()
+        .into_iter()
+        .map(|name| (name, 1.0))
+        .collect();
     let positive = coefficient.evaluate(&letters).ok()? > 0.0;
     (power % 2 == 1).then_some(positive)
 }

@@ -1,11 +1,12 @@
 //! The zeros of a force by numbers, at any scale.
 //!
-//! In: the force as a function, and places where it may have small features. Out: every zero at which it changes its sign,
-//! whether it pulls back there, and whether it can be reached from `x = 0` without crossing a pole or a place where the
-//! force has no value.
+//! In: the force as a function, and places where it may have small features. Out: every zero at
+//! which it changes its sign, whether it pulls back there, and whether it can be reached from
+//! `x = 0` without crossing a pole or a place where the force has no value.
 //!
-//! A polynomial changes its sign at most once between two neighbouring zeros of its derivative, so its zeros follow one
-//! derivative after the other. Any other force is walked along a grid of equal ratios, outwards from zero.
+//! A polynomial changes its sign at most once between two neighbouring zeros of its derivative, so
+//! its zeros follow one derivative after the other. Any other force is walked along a grid of equal
+//! ratios, outwards from zero.
 
 use crate::numeric::ode::polynomial::real_zeros;
 use crate::numeric::ode::root::{find_minimum, find_root};
@@ -31,13 +32,13 @@ const UNDERFLOW: f64 = 1e-300;
 /// Zeros on one side after which a force is taken to go on like that.
 const MOST: usize = 24;
 
-/// All zeros of a force, those of the right side first, each side outwards; `centres` are places with features that may be
-/// small beside their distance from zero.
+/// All zeros of a force, those of the right side first, each side outwards; `centres` are places
+/// with features that may be small beside their distance from zero.
 pub(super) fn zeros(value: &dyn Fn(f64) -> f64, centres: &[f64]) -> Vec<Zero> {
     let mut found = Vec::new();
     let nearest = 10_f64.powi(-DECADES);
-    // A force at rest that is smaller than the rounding beside it leaves the zero at zero: the first force that is felt on
-    // either side tells its sign.
+    // A force at rest that is smaller than the rounding beside it leaves the zero at zero: the
+    // first force that is felt on either side tells its sign.
     let at_zero = value(0.0) == 0.0;
     let felt = |side: f64| {
         let mut forces = places(side, &[])
@@ -70,11 +71,13 @@ pub(super) fn zeros(value: &dyn Fn(f64) -> f64, centres: &[f64]) -> Vec<Zero> {
     found
 }
 
-/// The grid of one side, from the nearest place to the farthest. No place is a round number, where poles like to be.
+/// The grid of one side, from the nearest place to the farthest. No place is a round number, where
+/// poles like to be.
 fn places(side: f64, centres: &[f64]) -> Vec<f64> {
     const PER_DECADE_OF_A_CENTRE: i32 = 16;
     const DECADES_OF_A_CENTRE: i32 = 9;
-    let power = |k: i32, per_decade: i32| 10_f64.powf((f64::from(k) + 0.37) / f64::from(per_decade));
+    let power =
+        |k: i32, per_decade: i32| 10_f64.powf((f64::from(k) + 0.37) / f64::from(per_decade));
     let steps = -DECADES * PER_DECADE..DECADES * PER_DECADE;
     let mut sizes: Vec<f64> = steps.map(|k| power(k, PER_DECADE)).collect();
     for centre in centres
@@ -113,7 +116,8 @@ impl Walk<'_> {
         // The last two places at which the force has a value other than zero, and the zeros since.
         let (mut before, mut last): (Option<Sample>, Option<Sample>) = (None, None);
         let mut flat = 0;
-        // A pole at zero has no other side to be reached from; beside it a high power is beyond all numbers for a while.
+        // A pole at zero has no other side to be reached from; beside it a high power is beyond all
+        // numbers for a while.
         let mut in_pole = !value(0.0).is_finite();
         for &x in places {
             let force = value(x);
@@ -190,7 +194,10 @@ impl Walk<'_> {
         let far = 0.1 * width;
         let near = f64::max(1e-7 * width, 64.0 * f64::EPSILON * place.abs());
         let grows = |side: f64| {
-            let (outer, inner) = ((self.value)(place + side * far), (self.value)(place + side * near));
+            let (outer, inner) = (
+                (self.value)(place + side * far),
+                (self.value)(place + side * near),
+            );
             !inner.is_finite() || inner.abs() > GROWTH * outer.abs()
         };
         grows(1.0) && grows(-1.0)
@@ -211,7 +218,9 @@ pub(super) fn polynomial_zeros(coefficients: &[f64]) -> Vec<Zero> {
         .map(|zero| zero.place)
         .collect();
     // Beyond the last zero the sign is that of the leading coefficient, and it alternates inwards.
-    let leading = coefficients.iter().rfind(|coefficient| **coefficient != 0.0);
+    let leading = coefficients
+        .iter()
+        .rfind(|coefficient| **coefficient != 0.0);
     let outermost = leading.is_some_and(|leading| *leading > 0.0);
     let count = places.len();
     let zero = |(index, &position): (usize, &f64)| Zero {
@@ -229,14 +238,23 @@ mod tests {
     use super::*;
 
     fn positions(value: &dyn Fn(f64) -> f64, stable: bool) -> Vec<f64> {
-        let found = zeros(value, &[]).into_iter().filter(|zero| zero.stable == stable);
+        let found = zeros(value, &[])
+            .into_iter()
+            .filter(|zero| zero.stable == stable);
         found.map(|zero| zero.position).collect()
     }
 
     fn assert_near(found: &[f64], expected: &[f64]) {
-        assert_eq!(found.len(), expected.len(), "{found:?} against {expected:?}");
+        assert_eq!(
+            found.len(),
+            expected.len(),
+            "{found:?} against {expected:?}"
+        );
         for (a, b) in found.iter().zip(expected) {
-            assert!((a - b).abs() <= 1e-13 * b.abs(), "{found:?} against {expected:?}");
+            assert!(
+                (a - b).abs() <= 1e-13 * b.abs(),
+                "{found:?} against {expected:?}"
+            );
         }
     }
 
@@ -262,14 +280,18 @@ mod tests {
             &positions(&|x| (x - 1.0) * (-(x - 1.0) * (x - 1.0)).exp(), true),
             &[1.0],
         );
-        assert_near(&positions(&|x: f64| (x - 3.0).max(0.0) + (x - 1.0).min(0.0), true), &[]);
+        assert_near(
+            &positions(&|x: f64| (x - 3.0).max(0.0) + (x - 1.0).min(0.0), true),
+            &[],
+        );
     }
 
     #[test]
     fn what_lies_beyond_a_pole_is_marked() {
-        for force in [(|x| x - 0.25 / ((1.0 - x) * (1.0 - x)) + 0.2) as fn(f64) -> f64, |x| {
-            x + 0.2 / (1.0 - x)
-        }] {
+        for force in [
+            (|x| x - 0.25 / ((1.0 - x) * (1.0 - x)) + 0.2) as fn(f64) -> f64,
+            |x| x + 0.2 / (1.0 - x),
+        ] {
             for zero in zeros(&force, &[]) {
                 assert_eq!(zero.reachable, zero.position < 1.0, "{zero:?}");
             }

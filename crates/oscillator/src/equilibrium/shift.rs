@@ -1,8 +1,9 @@
 //! Equilibria in exact form, and the force seen from one.
 //!
-//! Candidates are fractions, zeros of the linear expressions that occur in the force, multiples of pi, and the roots of its
-//! numerator where that is of second degree; each is tried by putting it in. A force of angles that is moved by a multiple
-//! of pi is written out, `cos(x - pi/2) = sin(x)`, so that its parity shows (NIST Digital Library of Mathematical
+//! Candidates are fractions, zeros of the linear expressions that occur in the force, multiples of
+//! pi, and the roots of its numerator where that is of second degree; each is tried by putting it
+//! in. A force of angles that is moved by a multiple of pi is written out,
+//! `cos(x - pi/2) = sin(x)`, so that its parity shows (NIST Digital Library of Mathematical
 //! Functions 4.21.2).
 
 use std::collections::BTreeMap;
@@ -20,7 +21,11 @@ use crate::symbol::Symbol;
 const LONGEST_LINEAR: usize = 16;
 
 /// The force at a position, as simple as it gets.
-pub(super) fn value_at(force: &Expr, coordinate: Symbol, position: &Expr) -> Result<Expr, ExprError> {
+pub(super) fn value_at(
+    force: &Expr,
+    coordinate: Symbol,
+    position: &Expr,
+) -> Result<Expr, ExprError> {
     with_known_angles(&force.substitute(coordinate, position)?)?.expand()
 }
 
@@ -29,15 +34,18 @@ pub(super) fn moved(force: &Expr, coordinate: Symbol, position: &Expr) -> Result
     with_known_angles(&force.substitute(coordinate, &(Expr::from(coordinate) + position))?)
 }
 
-/// Sines and cosines of sums with a multiple of pi, written out where its sine and cosine are roots of fractions.
+/// Sines and cosines of sums with a multiple of pi, written out where its sine and cosine are roots
+/// of fractions.
 fn with_known_angles(force: &Expr) -> Result<Expr, ExprError> {
     force.fold(|expr, children: &[Expr]| {
         let rebuilt = || match expr.children().zip(children).all(|(old, new)| old == new) {
             true => Ok(expr.clone()),
             false => expr.with_children(children),
         };
-        let (Node::Function(function @ (Function::Sin | Function::Cos | Function::Tan), _), [angle]) =
-            (expr.node(), children)
+        let (
+            Node::Function(function @ (Function::Sin | Function::Cos | Function::Tan), _),
+            [angle],
+        ) = (expr.node(), children)
         else {
             return rebuilt();
         };
@@ -77,22 +85,35 @@ fn half_turns(term: &Expr) -> Option<Rational> {
 fn sine_of(half_turns: &Rational) -> Option<Expr> {
     let whole = half_turns.floor();
     let part = half_turns - &whole;
-    let part = if part > ratio(1, 2) { ratio(1, 1) - part } else { part };
+    let part = if part > ratio(1, 2) {
+        ratio(1, 1) - part
+    } else {
+        part
+    };
     let squared = [(0, 1, 0), (1, 6, 1), (1, 4, 2), (1, 3, 3), (1, 2, 4)];
     let (.., quarters) = squared.into_iter().find(|&(p, q, _)| part == ratio(p, q))?;
     let size = Expr::number(ratio(quarters, 4)).sqrt().ok()?;
-    Some(if whole.to_integer().is_odd() { -size } else { size })
+    Some(if whole.to_integer().is_odd() {
+        -size
+    } else {
+        size
+    })
 }
 
-/// The exact form of the zero of a force near a number, the simplest first; `None` where none is found.
+/// The exact form of the zero of a force near a number, the simplest first; `None` where none is
+/// found.
 pub(super) fn exact_zero(force: &Expr, coordinate: Symbol, near: f64) -> Option<Expr> {
     let pi = |multiple: Rational| Expr::pi() * Expr::number(multiple);
     let turns = near / std::f64::consts::PI;
-    let multiples = [1, 2, 3, 4, 5, 6, 8, 12].map(|q| ratio((turns * f64::from(q)).round() as i64, q.into()));
+    let multiples =
+        [1, 2, 3, 4, 5, 6, 8, 12].map(|q| ratio((turns * f64::from(q)).round() as i64, q.into()));
     let angles = force.contains_function(Function::Sin)
         || force.contains_function(Function::Cos)
         || force.contains_function(Function::Tan);
-    let multiples = multiples.into_iter().filter(|_| angles && turns.abs() < 1e6).map(pi);
+    let multiples = multiples
+        .into_iter()
+        .filter(|_| angles && turns.abs() < 1e6)
+        .map(pi);
     let candidates = fractions_near(near)
         .into_iter()
         .map(Expr::number)
@@ -107,7 +128,8 @@ pub(super) fn exact_zero(force: &Expr, coordinate: Symbol, near: f64) -> Option<
         .find(|candidate| value_at(force, coordinate, candidate).is_ok_and(|value| value.is_zero()))
 }
 
-/// Fractions that may have been meant by a number: the convergents of its continued fraction, and its decimals.
+/// Fractions that may have been meant by a number: the convergents of its continued fraction, and
+/// its decimals.
 fn fractions_near(value: f64) -> Vec<Rational> {
     let Some(exact) = from_f64(value) else {
         return vec![];
@@ -156,7 +178,8 @@ pub(super) fn linear_zeros(force: &Expr, coordinate: Symbol) -> Vec<Expr> {
     }
 }
 
-/// The coefficients of an expression as a polynomial in the coordinate, lowest power first; `None` where it is none.
+/// The coefficients of an expression as a polynomial in the coordinate, lowest power first; `None`
+/// where it is none.
 pub(super) fn coefficients(expression: &Expr, coordinate: Symbol) -> Option<Vec<Expr>> {
     let mut coefficients: Vec<Vec<Expr>> = Vec::new();
     for term in expression.expand().ok()?.terms() {
@@ -189,25 +212,44 @@ pub(super) fn coefficients(expression: &Expr, coordinate: Symbol) -> Option<Vec<
     Some(coefficients)
 }
 
-/// The zeros of a force, beside `x = 0`, that have a closed form: of linear expressions in it, and of a numerator that is
-/// of second degree, or of second degree in the square.
+/// The zeros of a force, beside `x = 0`, that have a closed form: of linear expressions in it, and
+/// of a numerator that is of second degree, or of second degree in the square.
 pub(super) fn closed_forms(force: &Expr, coordinate: Symbol) -> Vec<Expr> {
-    let zero = |candidate: &Expr| value_at(force, coordinate, candidate).is_ok_and(|value| value.is_zero());
-    let mut forms: Vec<Expr> = linear_zeros(force, coordinate).into_iter().filter(zero).collect();
-    let numerator = numerator(force, coordinate).and_then(|numerator| coefficients(&numerator, coordinate));
+    let zero = |candidate: &Expr| {
+        value_at(force, coordinate, candidate).is_ok_and(|value| value.is_zero())
+    };
+    let mut forms: Vec<Expr> = linear_zeros(force, coordinate)
+        .into_iter()
+        .filter(zero)
+        .collect();
+    let numerator =
+        numerator(force, coordinate).and_then(|numerator| coefficients(&numerator, coordinate));
     if let Some(numerator) = numerator {
-        let lowest = numerator.iter().position(|coefficient| !coefficient.is_zero());
+        let lowest = numerator
+            .iter()
+            .position(|coefficient| !coefficient.is_zero());
         let numerator = &numerator[lowest.unwrap_or(numerator.len())..];
         let roots = match numerator {
             [c, b] => linear_root(b, c),
             [c, b, a] => quadratic_roots(a, b, c),
-            [c, b1, b, b3, a] if b1.is_zero() && b3.is_zero() => quadratic_roots(a, b, c).and_then(|squares| {
-                let roots: Result<Vec<Expr>, ExprError> = squares.iter().map(Expr::sqrt).collect();
-                Ok(roots?.into_iter().flat_map(|root| [root.clone(), -root]).collect())
-            }),
+            [c, b1, b, b3, a] if b1.is_zero() && b3.is_zero() => {
+                quadratic_roots(a, b, c).and_then(|squares| {
+                    let roots: Result<Vec<Expr>, ExprError> =
+                        squares.iter().map(Expr::sqrt).collect();
+                    Ok(roots?
+                        .into_iter()
+                        .flat_map(|root| [root.clone(), -root])
+                        .collect())
+                })
+            }
             _ => Ok(vec![]),
         };
-        forms.extend(roots.unwrap_or_default().into_iter().filter(|root| !root.is_zero()));
+        forms.extend(
+            roots
+                .unwrap_or_default()
+                .into_iter()
+                .filter(|root| !root.is_zero()),
+        );
     }
     forms.dedup();
     forms
@@ -220,7 +262,9 @@ pub(super) fn numerator(force: &Expr, coordinate: Symbol) -> Option<Expr> {
     for term in expanded.terms() {
         for factor in term.factors().1 {
             let (base, exponent) = factor.base_and_exponent();
-            let exponent = exponent.as_number().filter(|exponent| exponent.is_negative());
+            let exponent = exponent
+                .as_number()
+                .filter(|exponent| exponent.is_negative());
             if let Some(exponent) = exponent.filter(|_| base.contains(coordinate)) {
                 let power = (-exponent.to_integer())
                     .to_i64()
@@ -238,7 +282,8 @@ pub(super) fn numerator(force: &Expr, coordinate: Symbol) -> Option<Expr> {
         .map(|(base, power)| base.integer_power(power))
         .collect();
     let below = powers.ok()?;
-    let times = |term: &Expr| Expr::product(std::iter::once(term.clone()).chain(below.iter().cloned()));
+    let times =
+        |term: &Expr| Expr::product(std::iter::once(term.clone()).chain(below.iter().cloned()));
     Expr::sum(expanded.terms().iter().map(times)).expand().ok()
 }
 
@@ -246,7 +291,8 @@ fn linear_root(slope: &Expr, constant: &Expr) -> Result<Vec<Expr>, ExprError> {
     Ok(vec![Expr::divide(&-constant, slope)?.expand()?])
 }
 
-/// Both roots of `a x^2 + b x + c`, in the form in which nothing cancels for `b > 0`: the first goes to zero with `c`.
+/// Both roots of `a x^2 + b x + c`, in the form in which nothing cancels for `b > 0`: the first
+/// goes to zero with `c`.
 pub(super) fn quadratic_roots(a: &Expr, b: &Expr, c: &Expr) -> Result<Vec<Expr>, ExprError> {
     if b.is_zero() {
         let root = Expr::divide(&-c, a)?.sqrt()?;

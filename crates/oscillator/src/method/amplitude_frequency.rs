@@ -1,7 +1,9 @@
-//! He's amplitude-frequency formulation: two trial motions and the residuals they leave at one instant.
+//! He's amplitude-frequency formulation: two trial motions and the residuals they leave at one
+//! instant.
 //!
-//! Reference: J.-H. He, *An improved amplitude-frequency formulation for nonlinear oscillators*, Int. J. Nonlinear Sci.
-//! Numer. Simul. 9 (2008) 211-212; the instant cos^2 = 3/4 (theta = pi/6): L. Geng, X.-C. Cai, Eur. J. Phys. 28 (2007) 923-931.
+//! Reference: J.-H. He, *An improved amplitude-frequency formulation for nonlinear oscillators*,
+//! Int. J. Nonlinear Sci. Numer. Simul. 9 (2008) 211-212; the instant cos^2 = 3/4 (theta = pi/6):
+//! L. Geng, X.-C. Cai, Eur. J. Phys. 28 (2007) 923-931.
 //!
 //! ```text
 //! u_1 = A cos(omega_1 t),  u_2 = A cos(omega_2 t),   R_i = u_i'' + f(u_i) at cos^2 = 3/4
@@ -48,7 +50,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let law = positive_amplitude(&law).unwrap_or(law);
     let mut solution = unsolved(oscillator, options, METHOD, 1);
     set_law(&mut solution, &law)?;
-    let [letter, residual] = [FREQUENCY.written(), "R"].map(|letter| fresh_stem(letter, &oscillator.names()));
+    let [letter, residual] =
+        [FREQUENCY.written(), "R"].map(|letter| fresh_stem(letter, &oscillator.names()));
     let [first_name, second_name] = [1, 2].map(|number| format!("{letter}{number}"));
     let [omega, first_trial, second_trial] =
         ["omega", &first_name, &second_name].map(|name| Expr::symbol(name).integer_power(2));
@@ -57,13 +60,19 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let mixed = Expr::divide(&(&first_trial * &r2 - &second_trial * &r1), &(&r2 - &r1))?;
     let [one, two] = &trials;
     solution.derivation = vec![
-        Line::equation(first_trial, one).because(format!("first trial motion {AMPLITUDE}*cos({first_name}*t)")),
-        Line::equation(second_trial, two).because(format!("second trial motion {AMPLITUDE}*cos({second_name}*t)")),
+        Line::equation(first_trial, one).because(format!(
+            "first trial motion {AMPLITUDE}*cos({first_name}*t)"
+        )),
+        Line::equation(second_trial, two).because(format!(
+            "second trial motion {AMPLITUDE}*cos({second_name}*t)"
+        )),
         Line::equation(r1, first).because("residuals where the square of the cosine is 3/4"),
         Line::equation(r2, second),
         Line::equal([omega?.into(), mixed.into(), law.into()]).because("weighted by the residuals"),
     ];
-    solution.validity.push(Note::Collocated(Instant::CosineSquared));
+    solution
+        .validity
+        .push(Note::Collocated(Instant::CosineSquared));
     Ok(solution)
 }
 

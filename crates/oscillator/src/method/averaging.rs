@@ -1,8 +1,10 @@
-//! Averaging: amplitude and phase that change slowly, by the method of Krylov, Bogoliubov and Mitropolsky.
+//! Averaging: amplitude and phase that change slowly, by the method of Krylov, Bogoliubov and
+//! Mitropolsky.
 //!
-//! References: N. M. Krylov, N. N. Bogoliubov, *Introduction to Non-Linear Mechanics*, Princeton University Press 1943; N. N.
-//! Bogoliubov, Y. A. Mitropolsky, *Asymptotic Methods in the Theory of Non-Linear Oscillations*, Gordon and Breach 1961, chapter
-//! 1; A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapter 3.
+//! References: N. M. Krylov, N. N. Bogoliubov, *Introduction to Non-Linear Mechanics*, Princeton
+//! University Press 1943; N. N. Bogoliubov, Y. A. Mitropolsky, *Asymptotic Methods in the Theory of
+//! Non-Linear Oscillations*, Gordon and Breach 1961, chapter 1; A. H. Nayfeh, D. T.
+//! Mook, *Nonlinear Oscillations*, Wiley 1979, chapter 3.
 //!
 //! ```text
 //! x'' + omega0^2 x + delta g_1(x, x') + delta^2 g_2(x, x') = 0,     x = a cos(psi) + delta u_1(a, psi)
@@ -16,10 +18,11 @@
 //! B_2 = (C[R] + A_1 dA_1/da - a B_1^2)/(2 omega0 a)
 //! ```
 //!
-//! Order 1 is `a cos(psi)` with `A_1` and `B_1`, for every force whose projections have a closed form; order 2
-//! adds `u_1`, `A_2` and `B_2`, for polynomials in `x` and `x'`. The error of either is one power more of `delta` over times of
-//! `1/delta`. Everything but the linear restoring force is small: the letters whose vanishing leaves that alone, or else all
-//! other terms together. Where nothing linear restores, but one power of the coordinate, the true motion of that is averaged
+//! Order 1 is `a cos(psi)` with `A_1` and `B_1`, for every force whose projections have a closed
+//! form; order 2 adds `u_1`, `A_2` and `B_2`, for polynomials in `x` and `x'`. The error of either
+//! is one power more of `delta` over times of `1/delta`. Everything but the linear restoring force
+//! is small: the letters whose vanishing leaves that alone, or else all other terms together. Where
+//! nothing linear restores, but one power of the coordinate, the true motion of that is averaged
 //! along.
 //!
 //! ```
@@ -56,7 +59,8 @@ use crate::series::FourierSeries;
 use crate::solution::modulation::Release;
 use crate::solution::note::Cut;
 use crate::solution::{
-    AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, Method, Modulation, Note, Solution,
+    AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, Method, Modulation, Note,
+    Solution,
 };
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
@@ -68,7 +72,8 @@ type Series = FourierSeries<Polynomials>;
 /// Derives the equations of amplitude and phase.
 ///
 /// # Errors
-/// A drive that is no wave near a resonance, a term without a closed projection, no linear restoring force, an order that is not 1 or 2.
+/// A drive that is no wave near a resonance, a term without a closed projection, no linear
+/// restoring force, an order that is not 1 or 2.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let refuse = |reason: Unsuited| Err(reason.to(Method::Averaging));
     let parts = oscillator.parts()?;
@@ -88,7 +93,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         order => order,
     };
     let conserves = parts.damping.is_zero();
-    let convention = options.amplitude.unwrap_or(AmplitudeConvention::FirstHarmonic);
+    let convention = options
+        .amplitude
+        .unwrap_or(AmplitudeConvention::FirstHarmonic);
     if convention == AmplitudeConvention::Initial && !conserves {
         return refuse(Unsuited::SlowAmplitude);
     }
@@ -102,17 +109,24 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             }
             averaged
         }
-        // A series in what marks the terms is no polynomial in the coordinate and its velocity; steps at a letter are none either, whose
-        // force at rest is known not to act.
-        Err(OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(_) | OscillatorError::NoEquilibrium(_))
-            if order == 1 =>
-        {
-            by_projections(oscillator, &small)?
-        }
-        Err(OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(_) | OscillatorError::NoEquilibrium(_)) => {
+        // A series in what marks the terms is no polynomial in the coordinate and its velocity;
+        // steps at a letter are none either, whose force at rest is known not to act.
+        Err(
+            OscillatorError::NotPolynomial(_)
+            | OscillatorError::Taylor(_)
+            | OscillatorError::NoEquilibrium(_),
+        ) if order == 1 => by_projections(oscillator, &small)?,
+        Err(
+            OscillatorError::NotPolynomial(_)
+            | OscillatorError::Taylor(_)
+            | OscillatorError::NoEquilibrium(_),
+        ) => {
             // That it restores is said first.
             small.linear_part()?;
-            return refuse(not_polynomial(&small.without_linear()?, oscillator.coordinate));
+            return refuse(not_polynomial(
+                &small.without_linear()?,
+                oscillator.coordinate,
+            ));
         }
         Err(error) => return Err(error.into()),
     };
@@ -169,7 +183,8 @@ struct Averaged {
 }
 
 impl Averaged {
-    /// The amplitude from that of the first harmonic to `A = x(0)`, of a motion that loses nothing: `a = A - u_1(A, 0)`.
+    /// The amplitude from that of the first harmonic to `A = x(0)`, of a motion that loses nothing:
+    /// `a = A - u_1(A, 0)`.
     fn measure_at_start(&mut self) -> Result<(), Refusal> {
         let (a, start) = (self.amplitude, AmplitudeConvention::Initial.symbol());
         let renamed = |value: &Expr| value.substitute(a, &Expr::from(start));
@@ -177,11 +192,19 @@ impl Averaged {
         let [first, all] = &self.phase_rates;
         let moved = &first.differentiate(a)? * &shift;
         self.phase_rates = [renamed(first)?, renamed(&(all + &moved).expand()?)?];
-        let cosine = self.correction.at_zero().product(&Series::cos(POLYNOMIALS, 1));
+        let cosine = self
+            .correction
+            .at_zero()
+            .product(&Series::cos(POLYNOMIALS, 1));
         let renamed = Polynomial::symbol(start);
-        self.correction = self.correction.difference(&cosine).map(POLYNOMIALS, |value, _| {
-            value.substitute(a, &renamed).unwrap_or_else(|| value.clone())
-        });
+        self.correction = self
+            .correction
+            .difference(&cosine)
+            .map(POLYNOMIALS, |value, _| {
+                value
+                    .substitute(a, &renamed)
+                    .unwrap_or_else(|| value.clone())
+            });
         self.amplitude = start;
         Ok(())
     }
@@ -204,7 +227,8 @@ impl Averaged {
             }),
         };
         let taken: Vec<Symbol> = oscillator.names();
-        let leading = Series::cos(POLYNOMIALS, 1).product(&Series::constant(POLYNOMIALS, Polynomial::symbol(a)));
+        let leading = Series::cos(POLYNOMIALS, 1)
+            .product(&Series::constant(POLYNOMIALS, Polynomial::symbol(a)));
         let (first, small_with, cut) = small_in_words(small, order);
         let mut definitions = self.definitions;
         let mut taken = taken;
@@ -213,8 +237,12 @@ impl Averaged {
         let transient = match amplitude_rate.is_zero() {
             true => None,
             false => {
-                let (named, transient) =
-                    transient::from_release(a, [&amplitude_rate, &phase_rate], &mut release, &taken);
+                let (named, transient) = transient::from_release(
+                    a,
+                    [&amplitude_rate, &phase_rate],
+                    &mut release,
+                    &taken,
+                );
                 definitions.extend(named);
                 transient
             }
@@ -261,7 +289,9 @@ fn small_in_words(small: &SmallTerms, order: u32) -> (Symbol, Vec<Symbol>, Note)
     let first = names.next().unwrap_or(small.delta());
     let small_with: Vec<Symbol> = names.collect();
     let cut = Note::Cut(Cut::Truncated {
-        small: std::iter::once(first).chain(small_with.iter().copied()).collect(),
+        small: std::iter::once(first)
+            .chain(small_with.iter().copied())
+            .collect(),
         order,
         marks: small.letters().is_empty().then(Expr::one),
     });
@@ -282,9 +312,16 @@ fn of_polynomial(
     bounded(sizes, order as usize + 1)?;
     let mut taken = oscillator.names();
     let (omega0, root) = force.linear_frequency(&taken);
-    let used = force.terms.iter().map(|term| &term.coefficient).chain([&omega0]);
+    let used = force
+        .terms
+        .iter()
+        .map(|term| &term.coefficient)
+        .chain([&omega0]);
     let used: std::collections::BTreeSet<Symbol> = used.flat_map(Polynomial::symbols).collect();
-    let constants = force.definitions.iter().filter(|entry| used.contains(&entry.symbol));
+    let constants = force
+        .definitions
+        .iter()
+        .filter(|entry| used.contains(&entry.symbol));
     let definitions: Vec<Definition> = root.iter().chain(constants).cloned().collect();
     taken.extend(definitions.iter().map(|definition| definition.symbol));
     let a = AmplitudeConvention::FirstHarmonic.symbol();
@@ -297,11 +334,18 @@ fn of_polynomial(
         Line::equation(letters.of("g", 1), slow.force[0].clone()).because("the small terms are"),
     ];
     let twice = Expr::from(2) * Expr::from(&omega0);
-    let (rate, phase) = (Expr::from(a.derivative()), Expr::from(letters.phase.derivative()));
-    derivation.push(Line::equation(&twice * &rate, &slow.secular_sine).because("what sin(θ) asks for"));
+    let (rate, phase) = (
+        Expr::from(a.derivative()),
+        Expr::from(letters.phase.derivative()),
+    );
+    derivation
+        .push(Line::equation(&twice * &rate, &slow.secular_sine).because("what sin(θ) asks for"));
     let cosine = &twice * &Expr::from(a) * (&phase - &Expr::from(&omega0));
     derivation.push(Line::equation(cosine, &slow.secular_cosine).because("what cos(θ) asks for"));
-    let [mut amplitude_rate, mut phase_rate] = [slow.first[0].clone(), omega0.clone() + slow.first[1].clone()];
+    let [mut amplitude_rate, mut phase_rate] = [
+        slow.first[0].clone(),
+        omega0.clone() + slow.first[1].clone(),
+    ];
     let leading = [Expr::from(&amplitude_rate), Expr::from(&phase_rate)];
     let mut correction = Series::zero(POLYNOMIALS);
     let mut release = Release::at_start();
@@ -313,14 +357,18 @@ fn of_polynomial(
             Line::equation(letters.of("u", 1), correction.clone())
                 .because(format!("what {} leaves over", letters.of("g", 1))),
         );
-        derivation.push(Line::equation(letters.of("A", 2), &second_amplitude).because("the same at second order"));
+        derivation.push(
+            Line::equation(letters.of("A", 2), &second_amplitude)
+                .because("the same at second order"),
+        );
         derivation.push(Line::equation(letters.of("B", 2), &second_phase));
         amplitude_rate = amplitude_rate + second_amplitude;
         phase_rate = phase_rate + second_phase;
     }
     let in_numbers = |rate: &Polynomial| Expr::from(rate);
     let mixes = |term: &Term| term.velocity % 2 == 1 && (term.position + term.velocity) == 2;
-    // A quadratic damping acts on the amplitude from the second order on, as strongly as a cubic one: the first is not leading there.
+    // A quadratic damping acts on the amplitude from the second order on, as strongly as a cubic
+    // one: the first is not leading there.
     let (steady, mut notes) = match order == 2 && force.terms.iter().any(mixes) {
         true => (vec![], vec![]),
         false => steady(force, &omega0, small.delta(), &taken),
@@ -396,7 +444,10 @@ fn differentiated(polynomial: &Polynomial, by: Symbol) -> Polynomial {
     for (monomial, number) in polynomial.terms() {
         let exponent = monomial.exponent(by);
         let lower = monomial.product(&Monomial::power_of(by, -1));
-        slope.add_term(lower, number * Rational::from_integer(Integer::from(exponent)));
+        slope.add_term(
+            lower,
+            number * Rational::from_integer(Integer::from(exponent)),
+        );
     }
     slope
 }
@@ -411,7 +462,9 @@ impl Slow {
         let along = |order: usize| {
             let terms = force.terms.iter().filter(|term| term.order == order);
             terms.fold(Series::zero(POLYNOMIALS), |sum, term| {
-                let wave = position.power(term.position).product(&velocity.power(term.velocity));
+                let wave = position
+                    .power(term.position)
+                    .product(&velocity.power(term.velocity));
                 sum.sum(&wave.product(&constant(&term.coefficient)))
             })
         };
@@ -442,7 +495,8 @@ impl Slow {
         }
     }
 
-    /// Where a motion released at `A` begins: `a = A - u_1(A, 0)` and, so that it is at rest, `psi = (A_1/omega0 + u_1'(A, 0))/A`.
+    /// Where a motion released at `A` begins: `a = A - u_1(A, 0)` and, so that it is at rest,
+    /// `psi = (A_1/omega0 + u_1'(A, 0))/A`.
     fn release(&self) -> Result<Release, ExprError> {
         let start = AmplitudeConvention::Initial.symbol();
         let at_start = |value: &Expr| value.substitute(self.a, &Expr::from(start))?.expand();
@@ -466,7 +520,9 @@ impl Slow {
         let by_amplitude = slope.map(POLYNOMIALS, |value, _| differentiated(value, self.a));
         let omega0 = constant(&self.omega0);
         let (cos, sin) = (Series::cos(POLYNOMIALS, 1), Series::sin(POLYNOMIALS, 1));
-        let drift = constant(a1).product(&by_amplitude).sum(&constant(b1).product(&bend));
+        let drift = constant(a1)
+            .product(&by_amplitude)
+            .sum(&constant(b1).product(&bend));
         let drift = omega0.product(&drift).times(2);
         let amplitude = Polynomial::symbol(self.a);
         let speed = constant(a1)
@@ -479,12 +535,21 @@ impl Slow {
             let mut sum = sum;
             let coefficient = constant(&term.coefficient);
             if p > 0 {
-                let wave = self.position.power(p - 1).product(&self.velocity.power(q)).product(u);
+                let wave = self
+                    .position
+                    .power(p - 1)
+                    .product(&self.velocity.power(q))
+                    .product(u);
                 sum = sum.sum(&wave.product(&coefficient).times(i64::from(p)));
             }
             if q > 0 {
                 let wave = self.position.power(p).product(&self.velocity.power(q - 1));
-                sum = sum.sum(&wave.product(&speed).product(&coefficient).times(i64::from(q)));
+                sum = sum.sum(
+                    &wave
+                        .product(&speed)
+                        .product(&coefficient)
+                        .times(i64::from(q)),
+                );
             }
             sum
         });
@@ -492,14 +557,17 @@ impl Slow {
         let inverse = self.omega0.power(-1).unwrap_or_else(Polynomial::zero);
         let half = Polynomial::constant(Rational::new(1.into(), 2.into())).product(&inverse);
         let number = |value: i64| Polynomial::constant(Rational::from_integer(value.into()));
-        let of_b1 = number(2).product(a1).product(b1) + amplitude.product(a1).product(&differentiated(b1, self.a));
+        let of_b1 = number(2).product(a1).product(b1)
+            + amplitude.product(a1).product(&differentiated(b1, self.a));
         let of_amplitude = rest.sine(1).constant_term() + of_b1.product(&number(-1));
         let of_phase = rest.cosine(1).constant_term()
             + a1.product(&differentiated(a1, self.a))
             + amplitude.product(b1).product(b1).product(&number(-1));
         [
             of_amplitude.product(&half),
-            of_phase.product(&half).times_monomial(&Monomial::power_of(self.a, -1)),
+            of_phase
+                .product(&half)
+                .times_monomial(&Monomial::power_of(self.a, -1)),
         ]
     }
 }
@@ -536,7 +604,9 @@ impl Projected {
                 None => None,
             };
             let written = in_frequency.as_ref().unwrap_or(term);
-            let Some([sine, cosine]) = projections::of_term(written, oscillator.coordinate, amplitude, &omega0) else {
+            let Some([sine, cosine]) =
+                projections::of_term(written, oscillator.coordinate, amplitude, &omega0)
+            else {
                 let term = term.clone().into();
                 return Err(Unsuited::NoProjection { term }.to(Method::Averaging));
             };
@@ -554,10 +624,16 @@ impl Projected {
     }
 
     /// The motion, its velocity and the small terms, as lines of a derivation.
-    fn along(&self, oscillator: &Oscillator, amplitude: &Expr, letters: &Letters) -> Result<Vec<Line>, ExprError> {
+    fn along(
+        &self,
+        oscillator: &Oscillator,
+        amplitude: &Expr,
+        letters: &Letters,
+    ) -> Result<Vec<Line>, ExprError> {
         let theta = Expr::from(oscillator.phase());
         Ok(vec![
-            Line::equation(Expr::from(oscillator.coordinate), amplitude * &theta.cos()?).because("along"),
+            Line::equation(Expr::from(oscillator.coordinate), amplitude * &theta.cos()?)
+                .because("along"),
             Line::equation(
                 Expr::from(oscillator.velocity()),
                 -(amplitude * &self.omega0 * theta.sin()?),
@@ -567,7 +643,8 @@ impl Projected {
     }
 }
 
-/// A term with `omega0^2` for the coefficient of the linear force, where it is a multiple of that, as `g/L sin(x)` is of `g/L`.
+/// A term with `omega0^2` for the coefficient of the linear force, where it is a multiple of that,
+/// as `g/L sin(x)` is of `g/L`.
 fn with_frequency(term: &Expr, linear: &Expr, omega0: &Expr) -> Result<Option<Expr>, ExprError> {
     let letters = linear.symbols();
     let has_any = |term: &Expr| letters.iter().any(|&letter| term.contains(letter));
@@ -599,7 +676,8 @@ fn by_projections(oscillator: &Oscillator, small: &SmallTerms) -> Result<Average
     let psi = Expr::from(letters.phase.derivative());
     derivation.extend([
         Line::equation(&twice * &Expr::from(a.derivative()), sine).because("what sin(θ) asks for"),
-        Line::equation(&twice * &amplitude * (&psi - &omega0), cosine).because("what cos(θ) asks for"),
+        Line::equation(&twice * &amplitude * (&psi - &omega0), cosine)
+            .because("what cos(θ) asks for"),
     ]);
     let steady = transient::steady(a, &amplitude_rate);
     Ok(Averaged {

@@ -1,7 +1,9 @@
-//! A balance of harmonics solved by numbers: the branch that starts at rest, followed in the amplitude.
+//! A balance of harmonics solved by numbers: the branch that starts at rest, followed in the
+//! amplitude.
 //!
-//! References: M. Krack, J. Gross, *Harmonic Balance for Nonlinear Vibration Problems*, Springer 2019, chapter 4; E. L.
-//! Allgower, K. Georg, *Introduction to Numerical Continuation Methods*, SIAM 2003, chapters 2 and 6 (arclength, steps).
+//! References: M. Krack, J. Gross, *Harmonic Balance for Nonlinear Vibration Problems*, Springer
+//! 2019, chapter 4; E. L. Allgower, K. Georg, *Introduction to Numerical Continuation Methods*,
+//! SIAM 2003, chapters 2 and 6 (arclength, steps).
 //!
 //! ```text
 //! x = alpha sum_k b_k cos(k theta),   F_k = c_k/alpha - k^2 w b_k = 0,   sum_k b_k = +-1,   w = omega^2
@@ -9,15 +11,17 @@
 //! unknowns ln w, b_k, ln alpha: one more than equations; predicted along the tangent, corrected at right angles to it
 //! ```
 //!
-//! In these unknowns nothing depends on units: at small amplitudes `b_1 = 1` and all others vanish, or, for a force without
-//! linear part such as `x^3`, keep the values that belong to its lowest power. Where that branch turns back before it reaches
-//! the amplitude asked for, there may be others, about several wells or about this one: they are followed down from amplitudes so
-//! large that the highest power alone decides. Where there are none either, the balance is refused in words. Motions through an
-//! unstable equilibrium have no branch from rest: theirs is followed from an amplitude at which they are nearly of one term.
+//! In these unknowns nothing depends on units: at small amplitudes `b_1 = 1` and all others vanish,
+//! or, for a force without linear part such as `x^3`, keep the values that belong to its lowest
+//! power. Where that branch turns back before it reaches the amplitude asked for, there may be
+//! others, about several wells or about this one: they are followed down from amplitudes so large
+//! that the highest power alone decides. Where there are none either, the balance is refused in
+//! words. Motions through an unstable equilibrium have no branch from rest: theirs is followed from
+//! an amplitude at which they are nearly of one term.
 //!
-//! Integrals are sums: over equal steps, exact for polynomials of degree `d` beyond `(d + 1) k/2` points; and over Gauss points
-//! between the instants at which the motion crosses a corner, a jump or a narrow place of the force; where a force waves more often
-//! than they follow, finer ones.
+//! Integrals are sums: over equal steps, exact for polynomials of degree `d` beyond `(d + 1) k/2`
+//! points; and over Gauss points between the instants at which the motion crosses a corner, a jump
+//! or a narrow place of the force; where a force waves more often than they follow, finer ones.
 
 use std::cell::{Cell, OnceCell, RefCell};
 use std::f64::consts::PI;
@@ -40,7 +44,8 @@ pub struct Balance {
     pub frequency_squared: f64,
     /// The motion about the equilibrium.
     pub motion: FourierSeries<Doubles>,
-    /// Where the branch from rest ends before this amplitude: the motion is then one followed down from large amplitudes.
+    /// Where the branch from rest ends before this amplitude: the motion is then one followed down
+    /// from large amplitudes.
     pub rest_ends_at: Option<f64>,
     /// Whether it passes other equilibria on its way.
     pub over_several_wells: bool,
@@ -77,7 +82,9 @@ pub enum Lost {
         amplitude: f64,
     },
     /// The sums for the harmonics of the force do not agree, however fine.
-    #[error("no balance: the force changes too often along this motion for its harmonics to be summed")]
+    #[error(
+        "no balance: the force changes too often along this motion for its harmonics to be summed"
+    )]
     Unsettled,
     /// The motion found runs through a place where the force has no value.
     #[error("no balance: the motion of these harmonics runs through {}, where the force has no finite value", significant(*place, 6))]
@@ -87,8 +94,9 @@ pub enum Lost {
     },
 }
 
-/// What is known of the branch from rest of one balance, force and harmonics being the same, from the amplitudes that were asked for
-/// before: the next is reached from the nearest below it instead of from rest.
+/// What is known of the branch from rest of one balance, force and harmonics being the same, from
+/// the amplitudes that were asked for before: the next is reached from the nearest below it instead
+/// of from rest.
 #[derive(Debug, Default)]
 pub struct Continuation {
     states: RefCell<Vec<State>>,
@@ -104,13 +112,16 @@ impl Continuation {
         let goal = amplitude.abs().ln();
         let known = self.states.borrow();
         let distance = |state: &State| (state.logarithm() - goal).abs();
-        let reached = known.iter().filter(|state| state.side() == amplitude.signum());
+        let reached = known
+            .iter()
+            .filter(|state| state.side() == amplitude.signum());
         reached
             .min_by(|one, other| distance(one).total_cmp(&distance(other)))
             .cloned()
     }
 
-    /// The motion of the largest amplitude known that is no larger than this one, which is on this side.
+    /// The motion of the largest amplitude known that is no larger than this one, which is on this
+    /// side.
     fn below(&self, amplitude: f64) -> Option<State> {
         let goal = amplitude.abs().ln();
         let known = self.states.borrow();
@@ -123,8 +134,8 @@ impl Continuation {
     }
 }
 
-/// Solves the balance of `harmonics` for the motion with `x(0) = amplitude` about the equilibrium. `degree` is that of a
-/// polynomial force.
+/// Solves the balance of `harmonics` for the motion with `x(0) = amplitude` about the equilibrium.
+/// `degree` is that of a polynomial force.
 ///
 /// # Errors
 /// [`Lost`].
@@ -135,7 +146,8 @@ pub fn balance(
     amplitude: f64,
     known: &Continuation,
 ) -> Result<Balance, Lost> {
-    /// Narrow places on the way, such as the waves of a sine: a few harmonics say nothing of more, and take long.
+    /// Narrow places on the way, such as the waves of a sine: a few harmonics say nothing of more,
+    /// and take long.
     const MOST_CUTS: usize = 600;
     let mut problem = Problem::new(force, degree, harmonics, amplitude).ok_or(Lost::NoStart)?;
     problem.fineness = known.fineness.get().max(1);
@@ -169,7 +181,9 @@ pub fn balance(
 /// The last of these motions up to which, from the first on, nothing changes.
 fn settled<'s>(motions: &[&'s (State, f64)]) -> Option<&'s (State, f64)> {
     let first = motions.first()?.1;
-    let same = motions.iter().take_while(|entry| (entry.1 - first).abs() <= 1e-6);
+    let same = motions
+        .iter()
+        .take_while(|entry| (entry.1 - first).abs() <= 1e-6);
     same.last().copied()
 }
 
@@ -225,7 +239,12 @@ struct Nodes {
 }
 
 impl<'a> Problem<'a> {
-    fn new(force: &'a Force, degree: Option<u32>, harmonics: &'a [usize], amplitude: f64) -> Option<Self> {
+    fn new(
+        force: &'a Force,
+        degree: Option<u32>,
+        harmonics: &'a [usize],
+        amplitude: f64,
+    ) -> Option<Self> {
         let highest = *harmonics.last()?;
         let reach = 3.0 * amplitude.abs();
         let cuts = match degree {
@@ -239,7 +258,9 @@ impl<'a> Problem<'a> {
             harmonics,
             count: harmonics.len(),
             first: harmonics.iter().position(|&k| k == 1)?,
-            points: degree.map_or(8 * highest + 32, |degree| (degree as usize + 1) * highest / 2 + 2),
+            points: degree.map_or(8 * highest + 32, |degree| {
+                (degree as usize + 1) * highest / 2 + 2
+            }),
             polynomial: degree.is_some(),
             fineness: 1,
             equal_steps: OnceCell::new(),
@@ -258,7 +279,9 @@ impl<'a> Problem<'a> {
         let value = |i: usize| alpha * self.displacement(state, PI * i as f64 / SAMPLES as f64);
         (0..=SAMPLES)
             .map(value)
-            .fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)))
+            .fold((f64::MAX, f64::MIN), |(low, high), x| {
+                (low.min(x), high.max(x))
+            })
     }
 
     /// `sum b_k cos(k theta)`.
@@ -268,7 +291,8 @@ impl<'a> Problem<'a> {
     }
 
     fn velocity(&self, state: &State, theta: f64) -> f64 {
-        let wave = |(j, &k): (usize, &usize)| -(k as f64) * state.0[j + 1] * (k as f64 * theta).sin();
+        let wave =
+            |(j, &k): (usize, &usize)| -(k as f64) * state.0[j + 1] * (k as f64 * theta).sin();
         self.harmonics.iter().enumerate().map(wave).sum()
     }
 
@@ -290,8 +314,14 @@ impl<'a> Problem<'a> {
         if cuts.is_empty() {
             let points = self.points * finer;
             let equal_steps = || {
-                let angles: Vec<f64> = (0..points).map(|i| PI * (i as f64 + 0.5) / points as f64).collect();
-                Rc::new(self.with_cosines(&angles, vec![PI / points as f64; points], vec![None; points]))
+                let angles: Vec<f64> = (0..points)
+                    .map(|i| PI * (i as f64 + 0.5) / points as f64)
+                    .collect();
+                Rc::new(self.with_cosines(
+                    &angles,
+                    vec![PI / points as f64; points],
+                    vec![None; points],
+                ))
             };
             return match once {
                 true => self.equal_steps.get_or_init(equal_steps).clone(),
@@ -312,8 +342,14 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Gauss points between the instants at which the motion crosses one of the `cuts`, and those instants themselves.
-    fn between_crossings(&self, state: &State, cuts: &[f64], finer: usize) -> (Vec<f64>, Vec<f64>, Vec<Option<f64>>) {
+    /// Gauss points between the instants at which the motion crosses one of the `cuts`, and those
+    /// instants themselves.
+    fn between_crossings(
+        &self,
+        state: &State,
+        cuts: &[f64],
+        finer: usize,
+    ) -> (Vec<f64>, Vec<f64>, Vec<Option<f64>>) {
         let alpha = state.logarithm().exp();
         let highest = self.harmonics.last().copied().unwrap_or(1);
         let steps = 8 * highest + 64;
@@ -323,7 +359,10 @@ impl<'a> Problem<'a> {
             .collect();
         let mut crossings: Vec<(f64, f64)> = Vec::new();
         for (i, pair) in positions.windows(2).enumerate() {
-            for &cut in cuts.iter().filter(|&&cut| (pair[0] - cut) * (pair[1] - cut) <= 0.0) {
+            for &cut in cuts
+                .iter()
+                .filter(|&&cut| (pair[0] - cut) * (pair[1] - cut) <= 0.0)
+            {
                 let excess = |theta: f64| alpha * self.displacement(state, theta) - cut;
                 if let Ok(theta) = find_root(excess, place(i), place(i + 1)) {
                     crossings.push((theta, cut));
@@ -344,7 +383,8 @@ impl<'a> Problem<'a> {
             let pieces = (1 + (length * highest as f64 / 8.0) as usize) * finer;
             for piece in 0..pieces {
                 let at = |part: usize| part as f64 / pieces as f64;
-                // Points crowd at both ends, where a root or a corner makes the force less than smooth.
+                // Points crowd at both ends, where a root or a corner makes the force less than
+                // smooth.
                 for (u, weight) in nodes_and_weights(at(piece), at(piece + 1)) {
                     angles.push(pair[0] + length * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u));
                     weights.push(weight * length * 30.0 * (u * (1.0 - u)).powi(2));
@@ -356,7 +396,11 @@ impl<'a> Problem<'a> {
             let step = 1e-9 * alpha;
             let jump = self.force.at(cut + step) - self.force.at(cut - step);
             let speed = alpha * self.velocity(state, theta).abs();
-            let size = self.force.at(cut + step).abs().max(self.force.at(cut - step).abs());
+            let size = self
+                .force
+                .at(cut + step)
+                .abs()
+                .max(self.force.at(cut - step).abs());
             if jump.abs() > 1e-5 * size && speed > 0.0 {
                 angles.push(theta);
                 weights.push(0.0);
@@ -383,7 +427,11 @@ impl<'a> Problem<'a> {
                 }
             }
         }
-        if forces.iter().chain(slopes.iter()).any(|value| !value.is_finite()) {
+        if forces
+            .iter()
+            .chain(slopes.iter())
+            .any(|value| !value.is_finite())
+        {
             return None;
         }
         let mut weighted = nodes.cosines.clone();
@@ -416,7 +464,13 @@ impl<'a> Problem<'a> {
     }
 
     /// Newton's iteration from `start`, every step at right angles to `direction`.
-    fn corrected(&self, start: &State, direction: &DVector<f64>, finer: usize, iterations: usize) -> Option<State> {
+    fn corrected(
+        &self,
+        start: &State,
+        direction: &DVector<f64>,
+        finer: usize,
+        iterations: usize,
+    ) -> Option<State> {
         let mut state = start.clone();
         let size = self.count + 2;
         let mut last = f64::INFINITY;
@@ -470,8 +524,9 @@ impl<'a> Problem<'a> {
         Some((state, all - 1.0)).filter(|found| found.1.is_finite())
     }
 
-    /// A motion of small amplitude: the nearest that has the linear frequency and nearly is its first harmonic alone, or, where
-    /// the force has no linear part, the nearest below which nothing changes any more, as for a power of x.
+    /// A motion of small amplitude: the nearest that has the linear frequency and nearly is its
+    /// first harmonic alone, or, where the force has no linear part, the nearest below which
+    /// nothing changes any more, as for a power of x.
     fn at_rest(&self) -> Option<State> {
         /// Corrections so small, and a frequency so close, that the branch is that of rest.
         const NEARLY_ALONE: f64 = 0.01;
@@ -503,7 +558,11 @@ impl<'a> Problem<'a> {
             .collect();
         // Far out the force may overflow.
         let felt = tried.iter().rposition(Option::is_some)?;
-        let downwards: Vec<&(State, f64)> = tried[..=felt].iter().rev().map_while(Option::as_ref).collect();
+        let downwards: Vec<&(State, f64)> = tried[..=felt]
+            .iter()
+            .rev()
+            .map_while(Option::as_ref)
+            .collect();
         self.near(&settled(&downwards)?.0, 0.5)
     }
 
@@ -513,8 +572,8 @@ impl<'a> Problem<'a> {
             .filter(|found| (&found.0 - &guess.0).amax() <= distance)
     }
 
-    /// The branch from rest to the amplitude, or that from large amplitudes and where the one from rest ends. Where it is the sums that
-    /// are too coarse to go on, they are made finer.
+    /// The branch from rest to the amplitude, or that from large amplitudes and where the one from
+    /// rest ends. Where it is the sums that are too coarse to go on, they are made finer.
     fn followed(&mut self, known: &Continuation) -> Result<(State, Option<f64>), Lost> {
         if pushes_away(self.force, self.amplitude) {
             return self.over_the_hilltop(known).map(|found| (found, None));
@@ -549,13 +608,15 @@ impl<'a> Problem<'a> {
         found.ok_or(Lost::Ends { amplitude })
     }
 
-    /// The branch of motions through an unstable equilibrium, over the wells on both sides, from what is known of it or from an amplitude
-    /// nearby at which one term is nearly all.
+    /// The branch of motions through an unstable equilibrium, over the wells on both sides, from
+    /// what is known of it or from an amplitude nearby at which one term is nearly all.
     fn over_the_hilltop(&self, known: &Continuation) -> Result<State, Lost> {
-        /// Starts that are tried, and how far they are from the amplitude: to four times, where there is no end before.
+        /// Starts that are tried, and how far they are from the amplitude: to four times, where
+        /// there is no end before.
         const STARTS: usize = 6;
         const PER_DOUBLING: i32 = 3;
-        /// Starts in vain, for all amplitudes together: along a force of many waves each takes long.
+        /// Starts in vain, for all amplitudes together: along a force of many waves each takes
+        /// long.
         const MOST_IN_VAIN: usize = 12;
         let passages = passages(self.force, self.amplitude);
         let range = passage_at(&passages, self.amplitude).ok_or(Lost::NoStart)?;
@@ -568,29 +629,35 @@ impl<'a> Problem<'a> {
             known.states.borrow_mut().append(&mut passed);
             found
         };
-        let nearest = known.nearest(self.amplitude).and_then(|state| self.near(&state, 0.05));
+        let nearest = known
+            .nearest(self.amplitude)
+            .and_then(|state| self.near(&state, 0.05));
         if let Some(Ok(found)) = nearest.map(&reached) {
             return Ok(found);
         }
         if known.in_vain.get() >= MOST_IN_VAIN {
             return Err(Lost::NoStart);
         }
-        let sizes =
-            (-3 * PER_DOUBLING..=2 * PER_DOUBLING).map(|k| 2.0_f64.powf(f64::from(k) / f64::from(PER_DOUBLING)));
+        let sizes = (-3 * PER_DOUBLING..=2 * PER_DOUBLING)
+            .map(|k| 2.0_f64.powf(f64::from(k) / f64::from(PER_DOUBLING)));
         let sizes = sizes.map(|factor| factor * self.amplitude.abs());
         let mut alone: Vec<(State, f64)> = sizes
             .filter(|&size| size > range.from && size < end)
             .filter_map(|size| self.of_one_term(size * self.side()))
             .collect();
         // Nearly of one term, and not far.
-        let merit = |(state, corrections): &(State, f64)| corrections + 0.1 * (state.logarithm() - goal).abs();
+        let merit = |(state, corrections): &(State, f64)| {
+            corrections + 0.1 * (state.logarithm() - goal).abs()
+        };
         alone.sort_by(|one, other| merit(one).total_cmp(&merit(other)));
         let mut lost = Lost::NoStart;
         let starts = alone.iter().filter_map(|(alone, _)| self.near(alone, 0.5));
         for start in starts.take(STARTS) {
             let from = start.logarithm().exp() * self.side();
             let found = reached(start);
-            known.in_vain.set(known.in_vain.get() + usize::from(found.is_err()));
+            known
+                .in_vain
+                .set(known.in_vain.get() + usize::from(found.is_err()));
             match found {
                 Ok(found) => return Ok(found),
                 Err(last) if lost == Lost::NoStart => {
@@ -603,13 +670,15 @@ impl<'a> Problem<'a> {
         Err(lost)
     }
 
-    /// The branch from rest, or from what is known of it, to the amplitude; or its end. Nothing where there is no motion at rest.
+    /// The branch from rest, or from what is known of it, to the amplitude; or its end. Nothing
+    /// where there is no motion at rest.
     fn up_from_rest(&self, known: &Continuation) -> Option<Result<State, State>> {
         let mut passed = Vec::new();
         // By the sums of this problem, which may be finer than those that it was found with.
         let nearest = known.below(self.amplitude);
         let nearest = nearest.and_then(|state| self.near(&state, 0.05));
-        let mut found = nearest.and_then(|nearest| self.followed_from(nearest, 1.0, &mut passed).ok());
+        let mut found =
+            nearest.and_then(|nearest| self.followed_from(nearest, 1.0, &mut passed).ok());
         if found.is_none() {
             passed.clear();
             match self.followed_from(self.at_rest()?, 1.0, &mut passed) {
@@ -622,20 +691,28 @@ impl<'a> Problem<'a> {
         found.map(Ok)
     }
 
-    /// Whether the force waves more often than the sums can follow: finer ones say that this is no solution.
+    /// Whether the force waves more often than the sums can follow: finer ones say that this is no
+    /// solution.
     fn is_too_coarse(&self, state: &State) -> bool {
         const FINER: usize = 4;
         const AGREEING: f64 = 1e-7;
-        let residual = |finer: usize| Some(self.equations(state, &self.nodes(state, finer))?.0.amax());
-        !self.polynomial && self.force.waves() && residual(FINER).is_some_and(|residual| residual > AGREEING)
+        let residual =
+            |finer: usize| Some(self.equations(state, &self.nodes(state, finer))?.0.amax());
+        !self.polynomial
+            && self.force.waves()
+            && residual(FINER).is_some_and(|residual| residual > AGREEING)
     }
 
-    /// Whether the force pulls back all the way between two distances on either side of the equilibrium: there is no other.
+    /// Whether the force pulls back all the way between two distances on either side of the
+    /// equilibrium: there is no other.
     fn is_pulled_back(&self, low: f64, high: f64) -> bool {
         const SAMPLES: i32 = 1000;
         // Near the equilibrium and far from it alike.
-        let parts = (1..SAMPLES).flat_map(|k| [0.97_f64.powi(k), f64::from(k) / f64::from(SAMPLES)]);
-        let mut places = parts.flat_map(|part| [part * low, part * high]).filter(|&x| x != 0.0);
+        let parts =
+            (1..SAMPLES).flat_map(|k| [0.97_f64.powi(k), f64::from(k) / f64::from(SAMPLES)]);
+        let mut places = parts
+            .flat_map(|part| [part * low, part * high])
+            .filter(|&x| x != 0.0);
         places.all(|x| x * self.force.at(x) > 0.0)
     }
 
@@ -656,16 +733,22 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// The branch from its start to the amplitude, `way` being one upwards and minus one downwards; what it passes is added to
-    /// `passed`.
+    /// The branch from its start to the amplitude, `way` being one upwards and minus one downwards;
+    /// what it passes is added to `passed`.
     ///
     /// # Errors
     /// The last motion, where the branch does not reach the amplitude.
-    fn followed_from(&self, start: State, way: f64, passed: &mut Vec<State>) -> Result<State, State> {
+    fn followed_from(
+        &self,
+        start: State,
+        way: f64,
+        passed: &mut Vec<State>,
+    ) -> Result<State, State> {
         const LONGEST: f64 = 0.5;
         const SHORTEST: f64 = 1e-6;
         const STEPS: usize = 3000;
-        /// A correction longer than this share of its step leads to another branch, or round a bend too fast.
+        /// A correction longer than this share of its step leads to another branch, or round a bend
+        /// too fast.
         const SHARE: f64 = 0.2;
         let goal = self.amplitude.abs().ln();
         let size = self.count + 2;
@@ -678,13 +761,15 @@ impl<'a> Problem<'a> {
             if (before - goal).abs() < 1e-12 {
                 return Ok(state);
             }
-            // Round a turn the branch would come back to amplitudes that it has passed, with another motion.
+            // Round a turn the branch would come back to amplitudes that it has passed, with
+            // another motion.
             let tangent = self.tangent(&state, &direction);
             let Some(tangent) = tangent.filter(|tangent| way * tangent[size - 1] > 0.0) else {
                 break;
             };
             let left = (goal - before) / tangent[size - 1];
-            // The correction of the step before may have carried the branch past the goal, by less than that step.
+            // The correction of the step before may have carried the branch past the goal, by less
+            // than that step.
             let last = left <= length;
             let step = if last { left } else { length };
             let mut predicted = State(&state.0 + step * &tangent);

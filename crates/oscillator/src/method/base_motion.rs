@@ -4,8 +4,9 @@
 //! x'' + f(x - y(t), x' - y'(t), t) = 0,   y a sum of waves:      z = x - y,   z'' + f(z, z', t) + y'' = 0
 //! ```
 //!
-//! The motion of the support is read off a sum inside a nonlinear force, such as `x - Y sin(w t)` in the cube of that. In the relative
-//! coordinate the force is free of it, and the drive is its acceleration.
+//! The motion of the support is read off a sum inside a nonlinear force, such as `x - Y sin(w t)`
+//! in the cube of that. In the relative coordinate the force is free of it, and the drive is its
+//! acceleration.
 
 use std::collections::BTreeMap;
 
@@ -21,14 +22,18 @@ pub(super) fn is_of_drive(refusal: &Refusal) -> bool {
     let Refusal::Unsuited { reason, .. } = refusal else {
         return false;
     };
-    matches!(reason, Unsuited::NoWave { .. } | Unsuited::SecondDrive { .. })
+    matches!(
+        reason,
+        Unsuited::NoWave { .. } | Unsuited::SecondDrive { .. }
+    )
 }
 
-/// The answer in the coordinate relative to the first base that leaves no such refusal; `None` where no base moves, or there is no answer
-/// in that coordinate either.
+/// The answer in the coordinate relative to the first base that leaves no such refusal; `None`
+/// where no base moves, or there is no answer in that coordinate either.
 pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
     let relative = fresh("z", &oscillator.names());
-    // Seen from one of two bases the other moves: all are those of the equation as it is, never those of the relative one.
+    // Seen from one of two bases the other moves: all are those of the equation as it is, never
+    // those of the relative one.
     for base in base_motions(oscillator).ok()? {
         let seen = relative_to(oscillator, &base, relative).ok()?;
         match solve_in_its_coordinate(&seen, options) {
@@ -48,12 +53,19 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Soluti
 }
 
 /// The equation in the relative coordinate.
-fn relative_to(oscillator: &Oscillator, base: &Expr, relative: Symbol) -> Result<Oscillator, Refusal> {
+fn relative_to(
+    oscillator: &Oscillator,
+    base: &Expr,
+    relative: Symbol,
+) -> Result<Oscillator, Refusal> {
     let t = Symbol::new("t");
     let speed = base.differentiate(t)?;
     let own = [
         (oscillator.coordinate, &Expr::from(relative) + base),
-        (oscillator.velocity(), &Expr::from(relative.derivative()) + &speed),
+        (
+            oscillator.velocity(),
+            &Expr::from(relative.derivative()) + &speed,
+        ),
     ];
     let force = oscillator.force.substitute_all(&BTreeMap::from(own))?;
     let left = (&force + &speed.differentiate(t)?).expand()?;
@@ -68,12 +80,14 @@ fn relative_to(oscillator: &Oscillator, base: &Expr, relative: Symbol) -> Result
 
 /// The motions of all bases, each once, in the order of the sums in the force that hold them.
 fn base_motions(oscillator: &Oscillator) -> Result<Vec<Expr>, Refusal> {
-    /// One for each sum of a force would be tried for ever in a long one; two bases that move differently are rare.
+    /// One for each sum of a force would be tried for ever in a long one; two bases that move
+    /// differently are rare.
     const MOST: usize = 8;
     let own = [oscillator.coordinate, oscillator.velocity()];
     let mut bases: Vec<Expr> = vec![];
     for sum in oscillator.force.unique_nodes().skip(1) {
-        let moves = |name: Symbol| Ok::<_, ExprError>(beside(sum, name, own)?.map(|moving| -&moving));
+        let moves =
+            |name: Symbol| Ok::<_, ExprError>(beside(sum, name, own)?.map(|moving| -&moving));
         let base = match (moves(own[0])?, moves(own[1])?) {
             (Some(base), _) => Some(base),
             // A velocity that is no sum of waves leaves the bases that were found.
@@ -94,11 +108,15 @@ fn base_motions(oscillator: &Oscillator) -> Result<Vec<Expr>, Refusal> {
     Ok(bases)
 }
 
-/// The part of a sum that moves in time beside a coordinate or a velocity, over the factor of that; `None` where the sum is another one.
+/// The part of a sum that moves in time beside a coordinate or a velocity, over the factor of that;
+/// `None` where the sum is another one.
 fn beside(sum: &Expr, name: Symbol, own: [Symbol; 2]) -> Result<Option<Expr>, ExprError> {
     let t = Symbol::new("t");
-    let (moving, still): (Vec<&Expr>, Vec<&Expr>) = sum.terms().iter().partition(|term| term.contains(t));
-    let mut with_motion = still.iter().filter(|term| own.iter().any(|name| term.contains(*name)));
+    let (moving, still): (Vec<&Expr>, Vec<&Expr>) =
+        sum.terms().iter().partition(|term| term.contains(t));
+    let mut with_motion = still
+        .iter()
+        .filter(|term| own.iter().any(|name| term.contains(*name)));
     let (Some(only), None) = (with_motion.next(), with_motion.next()) else {
         return Ok(None);
     };

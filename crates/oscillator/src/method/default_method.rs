@@ -13,10 +13,13 @@
 //!                                        quadrature; the same through an unstable equilibrium that is asked for
 //! ```
 //!
-//! A formula of one term leaves the drift of an even force out, and is none then. Whatever stands in for the usual method says so.
+//! A formula of one term leaves the drift of an even force out, and is none then. Whatever stands
+//! in for the usual method says so.
 
 use super::linear::{Linear, is_free_and_linear};
-use super::multiple_scales::scaling::{has_linear_damping, has_quadratic_damping, has_quadratic_terms};
+use super::multiple_scales::scaling::{
+    has_linear_damping, has_quadratic_damping, has_quadratic_terms,
+};
 use super::{Options, Refusal, Unsuited, solve_by};
 use crate::equilibrium::centred;
 use crate::oscillator::{Oscillator, OscillatorError, Parts, SmallParameter};
@@ -27,8 +30,9 @@ use crate::symbol::Symbol;
 /// The order in the amplitude at which the frequency of a free motion changes first.
 const SECOND_ORDER: u32 = 2;
 
-/// The method that suits an equation, where none is asked for: multiple scales where something drives it, else that of Lindstedt
-/// and Poincare. Where that one has no expansion to begin with, [`solve`](super::solve) goes on to one that needs none.
+/// The method that suits an equation, where none is asked for: multiple scales where something
+/// drives it, else that of Lindstedt and Poincare. Where that one has no expansion to begin with,
+/// [`solve`](super::solve) goes on to one that needs none.
 ///
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
@@ -85,7 +89,8 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Result<Soluti
         if let Some(found) = in_small_motions(oscillator, options) {
             return Ok(found);
         }
-        return averaged(oscillator, options).or_else(|refusal| in_powers(refusal, oscillator, options));
+        return averaged(oscillator, options)
+            .or_else(|refusal| in_powers(refusal, oscillator, options));
     }
     match without_expansion(refusal, oscillator, options) {
         Some(solution) => Ok(solution),
@@ -93,8 +98,8 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Result<Soluti
     }
 }
 
-/// The exact motion of a linear equation, free, damped or driven; `None` where the equation is another one, or an expansion of the motion
-/// is asked for.
+/// The exact motion of a linear equation, free, damped or driven; `None` where the equation is
+/// another one, or an expansion of the motion is asked for.
 pub(super) fn linear(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
     let expansion = options.method.is_some()
         || options.order.is_some()
@@ -102,7 +107,9 @@ pub(super) fn linear(oscillator: &Oscillator, options: &Options) -> Option<Solut
         || options.small.is_some()
         || options.cycle.is_some();
     let free = |centred: &Oscillator| is_free_and_linear(centred).unwrap_or(false);
-    let moved = |centred: &Oscillator| !options.frequency_alone && matches!(Linear::new(centred), Ok(Some(_)));
+    let moved = |centred: &Oscillator| {
+        !options.frequency_alone && matches!(Linear::new(centred), Ok(Some(_)))
+    };
     if expansion || !about_equilibrium(oscillator, |centred, _| free(centred) || moved(centred)) {
         return None;
     }
@@ -122,7 +129,9 @@ pub(super) fn is_of_damping(refusal: &Refusal, oscillator: &Oscillator) -> bool 
         }
         | Refusal::AmplitudeNotFree { .. }
         | Refusal::NoLimitCycle { .. } => damped(),
-        Refusal::Oscillator(OscillatorError::NotSmall { .. } | OscillatorError::NoEquilibrium(_)) => damped(),
+        Refusal::Oscillator(
+            OscillatorError::NotSmall { .. } | OscillatorError::NoEquilibrium(_),
+        ) => damped(),
         Refusal::Oscillator(error) => has_no_expansion(error) && damped(),
         _ => false,
     }
@@ -132,7 +141,9 @@ pub(super) fn is_of_damping(refusal: &Refusal, oscillator: &Oscillator) -> bool 
 fn has_no_expansion(error: &OscillatorError) -> bool {
     matches!(
         error,
-        OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(_) | OscillatorError::NoRestoringForce(_)
+        OscillatorError::NotPolynomial(_)
+            | OscillatorError::Taylor(_)
+            | OscillatorError::NoRestoringForce(_)
     )
 }
 
@@ -148,7 +159,9 @@ fn averaged(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refu
         let lower = match solve_by(Method::Averaging, oscillator, &options) {
             Ok(mut solution) => {
                 if given < asked {
-                    solution.validity.push(Note::HighestOrderHere { asked, given });
+                    solution
+                        .validity
+                        .push(Note::HighestOrderHere { asked, given });
                 }
                 return Ok(solution);
             }
@@ -166,8 +179,8 @@ fn averaged(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refu
     }
 }
 
-/// Whether the terms from which a limit cycle begins are not the leading ones: no letter makes all but the linear terms small, and quadratic
-/// terms that damp act on the amplitude as cubic ones do.
+/// Whether the terms from which a limit cycle begins are not the leading ones: no letter makes all
+/// but the linear terms small, and quadratic terms that damp act on the amplitude as cubic ones do.
 fn begins_wrongly(solution: &Solution, oscillator: &Oscillator) -> bool {
     let marked = |note: &Note| matches!(note, Note::Cut(Cut::Truncated { marks: Some(_), .. }));
     solution.limit_cycle.is_some()
@@ -189,8 +202,8 @@ fn swings_over_a_hilltop(oscillator: &Oscillator) -> bool {
     centred(oscillator, None).is_ok_and(|centred| centred.cross_well.is_some())
 }
 
-/// Slow equations in powers of the amplitude, where that is asked to be small, or where quadratic terms are left out of the first order of
-/// averaging.
+/// Slow equations in powers of the amplitude, where that is asked to be small, or where quadratic
+/// terms are left out of the first order of averaging.
 fn in_small_motions(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
     let small = oscillator.small_parameter(options.small.as_deref());
     let asked = options.small.is_some() && matches!(small, Ok(SmallParameter::Amplitude));
@@ -214,11 +227,16 @@ fn in_small_motions(oscillator: &Oscillator, options: &Options) -> Option<Soluti
     Some(solution)
 }
 
-/// Slow equations in powers of the amplitude, where averaging is refused for a force whose first harmonic has no closed form.
+/// Slow equations in powers of the amplitude, where averaging is refused for a force whose first
+/// harmonic has no closed form.
 ///
 /// # Errors
 /// That refusal, where there is no expansion either.
-fn in_powers(refusal: Refusal, oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+fn in_powers(
+    refusal: Refusal,
+    oscillator: &Oscillator,
+    options: &Options,
+) -> Result<Solution, Refusal> {
     let Refusal::Unsuited {
         reason: reason @ Unsuited::NoProjection { .. },
         ..
@@ -238,7 +256,8 @@ fn in_powers(refusal: Refusal, oscillator: &Oscillator, options: &Options) -> Re
     }
 }
 
-/// The expansion in the amplitude of a force that is no polynomial beside a letter that might have been small.
+/// The expansion in the amplitude of a force that is no polynomial beside a letter that might have
+/// been small.
 fn series_in_amplitude(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
     let small = oscillator.small_parameter(None);
     matches!(small, Ok(SmallParameter::Parameter(_))).then_some(())?;
@@ -249,9 +268,14 @@ fn series_in_amplitude(oscillator: &Oscillator, options: &Options) -> Option<Sol
     solve_by(Method::LindstedtPoincare, oscillator, &options).ok()
 }
 
-/// A conservative motion about an equilibrium at which the force has no expansion, by a method that takes the force as it is; `None`
-/// where it is not that, where an expansion was asked for, and where no such method answers.
-fn without_expansion(refusal: &Refusal, oscillator: &Oscillator, options: &Options) -> Option<Solution> {
+/// A conservative motion about an equilibrium at which the force has no expansion, by a method that
+/// takes the force as it is; `None` where it is not that, where an expansion was asked for, and
+/// where no such method answers.
+fn without_expansion(
+    refusal: &Refusal,
+    oscillator: &Oscillator,
+    options: &Options,
+) -> Option<Solution> {
     let Refusal::Oscillator(error) = refusal else {
         return None;
     };
@@ -260,9 +284,11 @@ fn without_expansion(refusal: &Refusal, oscillator: &Oscillator, options: &Optio
     if !conservative || !has_no_expansion(error) || options.small.is_some() {
         return None;
     }
-    // A linear force that pushes away is a reason of its own, unless that equilibrium is asked for: rest is unstable.
+    // A linear force that pushes away is a reason of its own, unless that equilibrium is asked for:
+    // rest is unstable.
     let passed = || oscillator.about.is_some() && swings_over_a_hilltop(oscillator);
-    if matches!(error, OscillatorError::NoRestoringForce(linear) if !linear.is_zero()) && !passed() {
+    if matches!(error, OscillatorError::NoRestoringForce(linear) if !linear.is_zero()) && !passed()
+    {
         return None;
     }
     let by = |method: Method| solve_by(method, oscillator, options).ok();
@@ -275,7 +301,8 @@ fn without_expansion(refusal: &Refusal, oscillator: &Oscillator, options: &Optio
         Some(_) => by(Method::HarmonicBalance)?,
         None => {
             let exact = by(Method::Exact);
-            let hamiltonian = || by(Method::Hamiltonian).filter(|found| closed(found) && !leaves_drift(found));
+            let hamiltonian =
+                || by(Method::Hamiltonian).filter(|found| closed(found) && !leaves_drift(found));
             match exact {
                 Some(exact) if closed(&exact) => exact,
                 exact => match series_in_amplitude(oscillator, options) {

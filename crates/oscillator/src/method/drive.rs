@@ -1,12 +1,14 @@
-//! Drives of a motion: waves in time whose frequencies are multiples of one, alone or beside powers of the coordinate and its velocity.
+//! Drives of a motion: waves in time whose frequencies are multiples of one, alone or beside powers
+//! of the coordinate and its velocity.
 //!
 //! ```text
 //! F cos(Omega t + phi), F sin(Omega t), h x cos(2 Omega t), and sums of them
 //! ```
 //!
 //! Time begins where the first wave does: of the others the phase beside that of the first counts,
-//! `cos(m theta + delta) = cos(delta) cos(m theta) - sin(delta) sin(m theta)`. What the coordinate adds to the phase, as in the wave
-//! `cos(Omega t - k x)` that runs past, is taken apart alike: it is a factor of two waves.
+//! `cos(m theta + delta) = cos(delta) cos(m theta) - sin(delta) sin(m theta)`. What the coordinate
+//! adds to the phase, as in the wave `cos(Omega t - k x)` that runs past, is taken apart alike: it
+//! is a factor of two waves.
 
 use num_integer::Integer as _;
 use num_traits::{Signed as _, ToPrimitive as _, Zero as _};
@@ -40,7 +42,8 @@ pub(super) struct Driven {
     /// The multiple of the driving frequency.
     pub(super) multiple: u32,
     pub(super) quadrature: Quadrature,
-    /// Of a [series](Drive::in_small_motions), by how much its degree is above that of the first term.
+    /// Of a [series](Drive::in_small_motions), by how much its degree is above that of the first
+    /// term.
     pub(super) above: u32,
     /// The whole term, for messages.
     pub(super) term: Expr,
@@ -72,7 +75,8 @@ impl Driven {
         own.iter().all(|&name| !self.factor.contains(name))
     }
 
-    /// The terms of the series of the factor about rest; `None` where it is a polynomial already, or has none.
+    /// The terms of the series of the factor about rest; `None` where it is a polynomial already,
+    /// or has none.
     fn in_small_motions(&self, coordinate: Symbol, degree: u32) -> Option<Vec<Self>> {
         if self.factor.to_polynomial(&mut |_| None).ok()?.is_some() {
             return None;
@@ -102,7 +106,11 @@ impl Drive {
     ///
     /// # Errors
     /// A term that is no wave of it, by name.
-    pub(super) fn of(parts: &Parts, oscillator: &Oscillator, method: Method) -> Result<Self, Refusal> {
+    pub(super) fn of(
+        parts: &Parts,
+        oscillator: &Oscillator,
+        method: Method,
+    ) -> Result<Self, Refusal> {
         /// The frequencies of two waves, as multiples of one.
         const HIGHEST_MULTIPLE: u32 = 12;
         let taken = oscillator.names();
@@ -139,10 +147,16 @@ impl Drive {
             .iter()
             .map(|own| (own * Rational::from_integer(below.clone())).to_integer())
             .collect();
-        let common = whole.iter().fold(0.into(), |common: Integer, own| common.gcd(own));
+        let common = whole
+            .iter()
+            .fold(0.into(), |common: Integer, own| common.gcd(own));
         let unit = Rational::new(common.clone(), below);
         drive.frequency = (&Expr::number(unit) * &first.rate).expand()?;
-        let multiple_of = |number: &Integer| (number / &common).to_u32().filter(|own| *own <= HIGHEST_MULTIPLE);
+        let multiple_of = |number: &Integer| {
+            (number / &common)
+                .to_u32()
+                .filter(|own| *own <= HIGHEST_MULTIPLE)
+        };
         for ((wave, number), term) in waves.into_iter().zip(&whole).zip(terms) {
             let Some(multiple) = multiple_of(number) else {
                 let term = term.clone().into();
@@ -159,8 +173,8 @@ impl Drive {
         Ok(drive)
     }
 
-    /// The ratio to the linear frequency of the wave that is in resonance, at a ratio of the driving frequency; `None` where only sums and
-    /// differences of several frequencies are.
+    /// The ratio to the linear frequency of the wave that is in resonance, at a ratio of the
+    /// driving frequency; `None` where only sums and differences of several frequencies are.
     pub(super) fn nearest(&self, (p, q): (u32, u32)) -> Option<(u32, u32)> {
         if self.terms.iter().all(|driven| driven.multiple == 1) {
             return Some((p, q));
@@ -177,8 +191,9 @@ impl Drive {
         RESONANCES.into_iter().find(|known| ratios.contains(known))
     }
 
-    /// The resonances at which one of the waves has one of the [known ratios](RESONANCES) to the linear frequency, or a sum or difference
-    /// of two frequencies or of one and twice another is that, as ratios of the driving frequency, the likeliest first.
+    /// The resonances at which one of the waves has one of the [known ratios](RESONANCES) to the
+    /// linear frequency, or a sum or difference of two frequencies or of one and twice another is
+    /// that, as ratios of the driving frequency, the likeliest first.
     pub(super) fn resonances(&self) -> Vec<(u32, u32)> {
         let mut multiples: Vec<u32> = self.terms.iter().map(|driven| driven.multiple).collect();
         multiples.sort_unstable();
@@ -195,15 +210,17 @@ impl Drive {
                 .iter()
                 .flat_map(|one| multiples.iter().map(move |other| (*one, *other)))
         };
-        let combined = pairs().filter(|(one, other)| one < other).flat_map(|(one, other)| {
-            let twice = [
-                2 * one + other,
-                (2 * one).abs_diff(other),
-                one + 2 * other,
-                2 * other - one,
-            ];
-            [one + other, other - one].into_iter().chain(twice)
-        });
+        let combined = pairs()
+            .filter(|(one, other)| one < other)
+            .flat_map(|(one, other)| {
+                let twice = [
+                    2 * one + other,
+                    (2 * one).abs_diff(other),
+                    one + 2 * other,
+                    2 * other - one,
+                ];
+                [one + other, other - one].into_iter().chain(twice)
+            });
         let mut found = vec![];
         for ratio in ratios.chain(combined.map(|sum| (1, sum))) {
             if is_ratio(ratio) && !found.contains(&ratio) {
@@ -213,8 +230,8 @@ impl Drive {
         found
     }
 
-    /// The same with functions of the motion as their series about rest, up to a degree: `h sin(x) cos(Omega t)` of a shaken pendulum.
-    /// What has no such series stays as it is.
+    /// The same with functions of the motion as their series about rest, up to a degree:
+    /// `h sin(x) cos(Omega t)` of a shaken pendulum. What has no such series stays as it is.
     pub(super) fn in_small_motions(mut self, coordinate: Symbol, degree: u32) -> Self {
         self.terms = self
             .terms
@@ -237,7 +254,13 @@ impl Drive {
         &(&self.frequency * &Expr::symbol("t")) + &self.phase
     }
 
-    fn add(&mut self, wave: Wave, multiple: u32, term: &Expr, taken: &[Symbol]) -> Result<(), ExprError> {
+    fn add(
+        &mut self,
+        wave: Wave,
+        multiple: u32,
+        term: &Expr,
+        taken: &[Symbol],
+    ) -> Result<(), ExprError> {
         let mut push = |factor: Expr, quadrature| {
             if !factor.is_zero() {
                 self.terms.push(Driven {
@@ -273,7 +296,10 @@ fn named(value: Expr, letter: &str, definitions: &mut Vec<Definition>, taken: &[
     }
     let stem = fresh_stem(letter, taken);
     let symbol = Symbol::new(&format!("{stem}{}", definitions.len() / 2 + 1));
-    definitions.push(Definition { symbol, meaning: value });
+    definitions.push(Definition {
+        symbol,
+        meaning: value,
+    });
     Expr::from(symbol)
 }
 
@@ -295,7 +321,8 @@ impl Wave {
             Unsuited::NoWave { term }.to(method)
         };
         let (number, factors) = term.factors();
-        let (moving, still): (Vec<&Expr>, Vec<&Expr>) = factors.iter().partition(|factor| factor.contains(t));
+        let (moving, still): (Vec<&Expr>, Vec<&Expr>) =
+            factors.iter().partition(|factor| factor.contains(t));
         let [wave] = moving.as_slice() else {
             return Err(not_periodic());
         };
@@ -305,17 +332,22 @@ impl Wave {
             _ => return Err(not_periodic()),
         };
         let argument = argument.expand()?;
-        let (turning, rest): (Vec<Expr>, Vec<Expr>) =
-            argument.terms().iter().cloned().partition(|term| term.contains(t));
+        let (turning, rest): (Vec<Expr>, Vec<Expr>) = argument
+            .terms()
+            .iter()
+            .cloned()
+            .partition(|term| term.contains(t));
         let (mut rate, mut phase) = (
             Expr::divide(&Expr::sum(turning), &Expr::from(t))?.expand()?,
             Expr::sum(rest),
         );
-        let moves = |part: &Expr| part.contains(t) || part.symbols().iter().any(|name| name.primes() > 0);
+        let moves =
+            |part: &Expr| part.contains(t) || part.symbols().iter().any(|name| name.primes() > 0);
         if moves(&rate) || moves(&phase) {
             return Err(not_periodic());
         }
-        let mut factor = Expr::product(std::iter::once(Expr::number(number)).chain(still.into_iter().cloned()));
+        let mut factor =
+            Expr::product(std::iter::once(Expr::number(number)).chain(still.into_iter().cloned()));
         if rate.has_leading_minus() {
             (rate, phase) = (-&rate, -&phase);
             if quadrature == Quadrature::Sine {
@@ -337,7 +369,8 @@ impl Wave {
     }
 
     /// The wave with what the coordinate adds to its phase as a factor:
-    /// `cos(theta + g) = cos(g) cos(theta) - sin(g) sin(theta)`, `sin(theta + g) = cos(g) sin(theta) + sin(g) cos(theta)`.
+    /// `cos(theta + g) = cos(g) cos(theta) - sin(g) sin(theta)`,
+    /// `sin(theta + g) = cos(g) sin(theta) + sin(g) cos(theta)`.
     fn apart_from(self, coordinate: Symbol) -> Result<Vec<Self>, ExprError> {
         if !self.phase.contains(coordinate) {
             return Ok(vec![self]);

@@ -1,4 +1,5 @@
-//! The answer of a driven motion, whichever method derived its slow equations: one place for what all have alike.
+//! The answer of a driven motion, whichever method derived its slow equations: one place for what
+//! all have alike.
 
 use super::drive::Drive;
 use crate::derivation::Line;
@@ -7,7 +8,9 @@ use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
 use crate::solution::modulation::Resonance;
-use crate::solution::{AmplitudeConvention, Definition, Law, Method, Modulation, Note, Response, Solution};
+use crate::solution::{
+    AmplitudeConvention, Definition, Law, Method, Modulation, Note, Response, Solution,
+};
 use crate::symbol::Symbol;
 
 /// What a method found of a driven motion.
@@ -50,7 +53,8 @@ impl DrivenMotion<'_> {
             definitions: self.definitions,
             equilibrium: Expr::zero(),
             law: self.backbone,
-            displacement: FourierSeries::cos(POLYNOMIALS, 1).product(&FourierSeries::constant(POLYNOMIALS, amplitude)),
+            displacement: FourierSeries::cos(POLYNOMIALS, 1)
+                .product(&FourierSeries::constant(POLYNOMIALS, amplitude)),
             limit_cycle: None,
             modulation: Some(Modulation {
                 amplitude: convention.symbol(),

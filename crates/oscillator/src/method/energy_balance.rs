@@ -1,7 +1,7 @@
 //! He's energy balance: the energy of a one-term motion collocated at an eighth of the period.
 //!
-//! Reference: J.-H. He, *Preliminary report on the energy balance for nonlinear oscillations*, Mech. Res. Commun. 29 (2002)
-//! 107-111.
+//! Reference: J.-H. He, *Preliminary report on the energy balance for nonlinear oscillations*,
+//! Mech. Res. Commun. 29 (2002) 107-111.
 //!
 //! ```text
 //! x'^2/2 + V(x) = V(A),   x = A cos(omega t)
@@ -47,7 +47,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let law = |potential: &Expr| {
         let amplitude = Expr::symbol("A");
         let at = |place: &Expr| potential.substitute(oscillator.coordinate, place).ok();
-        let rise = at(&amplitude)? - at(&Expr::divide(&amplitude, &Expr::from(2).sqrt().ok()?).ok()?)?;
+        let rise =
+            at(&amplitude)? - at(&Expr::divide(&amplitude, &Expr::from(2).sqrt().ok()?).ok()?)?;
         // The logarithm of A cancels.
         let rise = logarithms_apart(&positive_amplitude(&rise)?).ok()?;
         let law = Expr::divide(&(Expr::from(4) * rise), &amplitude.integer_power(2).ok()?).ok()?;
@@ -84,7 +85,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             solution.law = Law::Quadrature(vec![Line::equation(squared, integral)]);
         }
     }
-    solution.validity.push(Note::Collocated(Instant::EighthOfPeriod));
+    solution
+        .validity
+        .push(Note::Collocated(Instant::EighthOfPeriod));
     Ok(solution)
 }
 
@@ -105,7 +108,8 @@ fn derivation(oscillator: &Oscillator, potential: &Expr) -> Result<Vec<Line>, Re
     ])
 }
 
-/// `log(sqrt(2)*A/2) = log(A) - log(2)/2`: logarithms of products of whole numbers, their roots and the positive amplitude as sums.
+/// `log(sqrt(2)*A/2) = log(A) - log(2)/2`: logarithms of products of whole numbers, their roots and
+/// the positive amplitude as sums.
 fn logarithms_apart(law: &Expr) -> Result<Expr, ExprError> {
     let amplitude = Expr::symbol("A");
     let logarithm = |of: Expr| Expr::function(Function::Log, vec![of]);
@@ -119,7 +123,10 @@ fn logarithms_apart(law: &Expr) -> Result<Expr, ExprError> {
             let positive = base == amplitude || base.as_number().is_some_and(Signed::is_positive);
             positive && exponent.as_number().is_some()
         };
-        if !number.is_positive() || factors.len() + usize::from(!number.is_one()) < 2 || !factors.iter().all(known) {
+        if !number.is_positive()
+            || factors.len() + usize::from(!number.is_one()) < 2
+            || !factors.iter().all(known)
+        {
             return expr.with_children(children);
         }
         let whole = |part: &Integer| logarithm(Expr::number(Rational::from_integer(part.clone())));

@@ -1,9 +1,10 @@
-//! The exact frequency: elliptic integrals and Gamma functions where the force is one of those that lead to them, quadrature
-//! for any other.
+//! The exact frequency: elliptic integrals and Gamma functions where the force is one of those that
+//! lead to them, quadrature for any other.
 //!
-//! References: L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., section 11; P. F. Byrd, M. D. Friedman, *Handbook of
-//! Elliptic Integrals*, 2nd ed., Springer 1971, 235 and 263; A. Belendez et al., *Closed-form exact solutions for the
-//! unforced quintic nonlinear oscillator*, Adv. Math. Phys. 2017, 7396063.
+//! References: L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., section 11; P. F. Byrd, M. D.
+//! Friedman, *Handbook of Elliptic Integrals*, 2nd ed., Springer 1971, 235 and 263; A. Belendez et
+//! al., *Closed-form exact solutions for the unforced quintic nonlinear oscillator*, Adv. Math.
+//! Phys. 2017, 7396063.
 //!
 //! ```text
 //! T = 2 int_(x_1)^A dx/sqrt(2 (V(A) - V(x)))
@@ -17,7 +18,8 @@
 //! a x + b x^2:          omega = pi sqrt((P + D)/2)/(2 K((P - D)/(P + D))),  P = a + 2 b A,  D^2 = a^2 - 4 a b A/3 - 4 b^2 A^2/3
 //! ```
 //!
-//! and the motions, by the elliptic functions of Jacobi of these parameters `m` (NIST Digital Library of Mathematical Functions 22.19):
+//! and the motions, by the elliptic functions of Jacobi of these parameters `m` (NIST Digital
+//! Library of Mathematical Functions 22.19):
 //!
 //! ```text
 //! k sin(c x):           x = (2/c) asin(sin(c A/2) sn(sqrt(k c) t + K(m), m))
@@ -56,8 +58,8 @@ use crate::solution::{ClosedForm, Law, Method, Note, Solution, note::ExactBy};
 use crate::symbol::fresh;
 use crate::symbol::letters::AMPLITUDE;
 
-/// The exact law of a conservative oscillator, whose motion is known by numbers; the exact motion of a linear one that something damps or
-/// drives.
+/// The exact law of a conservative oscillator, whose motion is known by numbers; the exact motion
+/// of a linear one that something damps or drives.
 ///
 /// # Errors
 /// A force that is neither conservative nor linear, by its term.
@@ -77,7 +79,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     solution.law = match law {
         Some(Frequency::Squared(squared)) => Law::squared(squared),
         Some(Frequency::Plain(frequency)) => Law::Frequency(frequency),
-        Some(Frequency::Form(value)) => Law::Closed(ClosedForm { squared: false, value }),
+        Some(Frequency::Form(value)) => Law::Closed(ClosedForm {
+            squared: false,
+            value,
+        }),
         None => Law::Quadrature(period_by_energy(oscillator, &force)?),
     };
     let is_elliptic = |motion: &Expr| {
@@ -89,12 +94,16 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let by_jacobi = motion.as_ref().is_some_and(is_elliptic);
     solution.closed_motion = motion;
     solution.derivation = period_by_energy(oscillator, &force)?;
-    solution.validity.push(Note::Exact(match solution.law.quadrature() {
-        None if is_free_and_linear(oscillator)? => ExactBy::Linear,
-        None => ExactBy::ClosedForm,
-        Some(_) => ExactBy::Quadrature,
-    }));
-    solution.validity.extend(by_jacobi.then_some(Note::EllipticFunctions));
+    solution
+        .validity
+        .push(Note::Exact(match solution.law.quadrature() {
+            None if is_free_and_linear(oscillator)? => ExactBy::Linear,
+            None => ExactBy::ClosedForm,
+            Some(_) => ExactBy::Quadrature,
+        }));
+    solution
+        .validity
+        .extend(by_jacobi.then_some(Note::EllipticFunctions));
     Ok(solution)
 }
 
@@ -140,7 +149,8 @@ impl Energy<'_> {
             value.expand().ok()
         };
         let gained = at(&amplitude).zip(at(&x.into()));
-        let gained = gained.and_then(|(turning, here)| (Expr::from(2) * (turning - here)).expand().ok());
+        let gained =
+            gained.and_then(|(turning, here)| (Expr::from(2) * (turning - here)).expand().ok());
         let gained: Formula = gained.map_or_else(
             || {
                 Ok::<_, Refusal>(Formula::Integral {
@@ -181,12 +191,17 @@ impl Energy<'_> {
             factor: Expr::from(factor),
             from,
             to: amplitude,
-            integrand: Box::new(Formula::OverRoot(self.root_of_mass.clone(), Box::new(gained))),
+            integrand: Box::new(Formula::OverRoot(
+                self.root_of_mass.clone(),
+                Box::new(gained),
+            )),
             variable: x,
         };
         let words = match self.is_odd {
             true => "the period, from the energy".to_owned(),
-            false => format!("the period, from the energy; for {AMPLITUDE} < 0 from {AMPLITUDE} to {turning_back}"),
+            false => format!(
+                "the period, from the energy; for {AMPLITUDE} < 0 from {AMPLITUDE} to {turning_back}"
+            ),
         };
         lines.push(Line::equation(total, period).because(words));
         let frequency = Expr::divide(&(Expr::from(2) * Expr::pi()), &Expr::from(total))?;
@@ -241,7 +256,10 @@ fn elliptic(parameter: Expr) -> Result<Expr, ExprError> {
 
 /// `pi scale/(2 K(parameter))`.
 fn by_elliptic(scale: &Expr, parameter: Expr) -> Result<Expr, ExprError> {
-    Expr::divide(&(Expr::pi() * scale), &(Expr::from(2) * elliptic(parameter)?))
+    Expr::divide(
+        &(Expr::pi() * scale),
+        &(Expr::from(2) * elliptic(parameter)?),
+    )
 }
 
 fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> {
@@ -253,7 +271,10 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
     let squared = amplitude.integer_power(2)?;
     match powers.as_slice() {
         [1] => {
-            let squared = coefficients.get(1).cloned().unwrap_or_else(Polynomial::zero);
+            let squared = coefficients
+                .get(1)
+                .cloned()
+                .unwrap_or_else(Polynomial::zero);
             let (rate, law) = match squared.single_term_root() {
                 Some(root) => (Expr::from(&root), Frequency::Plain(root)),
                 None => (of(1).sqrt()?, Frequency::Squared(squared)),
@@ -280,7 +301,9 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
             let product = &b * &amplitude;
             let p = &a + &(Expr::from(2) * &product);
             let third = |n: i64| Expr::number(ratio(n, 3));
-            let inside = a.integer_power(2)? - third(4) * &a * &product - third(4) * product.integer_power(2)?;
+            let inside = a.integer_power(2)?
+                - third(4) * &a * &product
+                - third(4) * product.integer_power(2)?;
             let d = inside.expand()?.sqrt()?;
             let sum = &p + &d;
             let scale = (&sum * &half()).sqrt()?;
@@ -313,7 +336,8 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
             let q = Expr::from(2) * &r + &b * &half() + &l * &Expr::number(ratio(1, 3));
             let product = (&p * &r).expand()?;
             let quarter = Expr::power(&product, &Expr::number(ratio(1, 4)))?;
-            let parameter = half() - Expr::divide(&q.expand()?, &(Expr::from(4) * product.sqrt()?))?;
+            let parameter =
+                half() - Expr::divide(&q.expand()?, &(Expr::from(4) * product.sqrt()?))?;
             let law = Expr::divide(
                 &(Expr::pi() * &quarter),
                 &(Expr::from(2) * Expr::function(Function::EllipticK, vec![parameter.clone()])?),
@@ -328,7 +352,8 @@ fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> 
     }
 }
 
-/// The square root of a product as a number times one root, of pi among its factors: `sqrt(6*pi)/2` for 3 pi/2.
+/// The square root of a product as a number times one root, of pi among its factors: `sqrt(6*pi)/2`
+/// for 3 pi/2.
 fn single_root(product: &Expr) -> Result<Expr, ExprError> {
     let (number, factors) = product.factors();
     // sqrt(p/q) = sqrt(p q)/q, and sqrt(p q) is a number times the root of one without squares.
@@ -348,10 +373,14 @@ pub(super) fn of_power(coefficient: &Expr, n: &Expr) -> Result<Expr, ExprError> 
     let half_of_last = Expr::divide(&(n - &Expr::one()), &Expr::from(2))?;
     let amplitude = Expr::power(&Expr::symbol("A"), &half_of_last)?;
     let inverse = Expr::divide(&Expr::one(), &next)?;
-    Expr::divide(&(scale * amplitude * gamma(half() + &inverse)?), &gamma(inverse)?)
+    Expr::divide(
+        &(scale * amplitude * gamma(half() + &inverse)?),
+        &gamma(inverse)?,
+    )
 }
 
-/// A linear force with a function of letters as its stiffness; a single term: a power with its sign, a sine or a hyperbolic sine.
+/// A linear force with a function of letters as its stiffness; a single term: a power with its
+/// sign, a sine or a hyperbolic sine.
 fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Known>, Refusal> {
     let coordinate = oscillator.coordinate;
     if is_free_and_linear(oscillator)? {
@@ -360,11 +389,16 @@ fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Known>, R
         let motion = Expr::symbol("A") * (&rate * &time()).cos()?;
         return Ok(Some(Known::form(rate, Some(motion))));
     }
-    let [term] = force.terms() else { return Ok(None) };
+    let [term] = force.terms() else {
+        return Ok(None);
+    };
     let (mut outside, mut inside) = split(term, coordinate);
     if let [factor] = inside.as_slice()
-        && let Node::Function(function @ (Function::Sin | Function::Sinh), arguments) = factor.node()
-        && let Some((slope, phase)) = arguments.first().and_then(|argument| linear_in(argument, coordinate))
+        && let Node::Function(function @ (Function::Sin | Function::Sinh), arguments) =
+            factor.node()
+        && let Some((slope, phase)) = arguments
+            .first()
+            .and_then(|argument| linear_in(argument, coordinate))
         && phase.is_zero()
     {
         let scale = (&outside * &slope).expand()?.sqrt()?;
@@ -372,24 +406,39 @@ fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Known>, R
         let sine = Expr::function(*function, vec![angle.clone()])?;
         let squared = sine.integer_power(2)?;
         if *function == Function::Sinh {
-            // With s = sinh(c x/2) the energy is s'^2 = k c (1 + s^2) (S^2 - s^2), S the largest s: s = S cn.
+            // With s = sinh(c x/2) the energy is s'^2 = k c (1 + s^2) (S^2 - s^2), S the largest s:
+            // s = S cn.
             let of_angle = |function| Expr::function(function, vec![angle.clone()]);
             let rate = &scale * &of_angle(Function::Cosh)?;
-            let [_, cn, _] = jacobi(&(rate * time()), &of_angle(Function::Tanh)?.integer_power(2)?)?;
+            let [_, cn, _] = jacobi(
+                &(rate * time()),
+                &of_angle(Function::Tanh)?.integer_power(2)?,
+            )?;
             let turned = Expr::function(Function::Asinh, vec![sine * cn])?;
             let motion = Expr::divide(&(Expr::from(2) * turned), &slope)?;
-            return Ok(Some(Known::form(by_elliptic(&scale, -squared)?, Some(motion))));
+            return Ok(Some(Known::form(
+                by_elliptic(&scale, -squared)?,
+                Some(motion),
+            )));
         }
         let quarter = elliptic(squared.clone())?;
         let [sn, ..] = jacobi(&(&scale * &time() + quarter), &squared)?;
         let turned = Expr::function(Function::Asin, vec![sine * sn])?;
         let motion = Expr::divide(&(Expr::from(2) * turned), &slope)?;
-        return Ok(Some(Known::form(by_elliptic(&scale, squared)?, Some(motion))));
+        return Ok(Some(Known::form(
+            by_elliptic(&scale, squared)?,
+            Some(motion),
+        )));
     }
     // A power that is no number.
     let mut power = Power::one();
-    if inside.iter().all(|factor| power.takes(factor, coordinate)) && power.exponent.as_number().is_none() {
-        let form = power.odd.then(|| of_power(&outside, &power.exponent)).transpose()?;
+    if inside.iter().all(|factor| power.takes(factor, coordinate))
+        && power.exponent.as_number().is_none()
+    {
+        let form = power
+            .odd
+            .then(|| of_power(&outside, &power.exponent))
+            .transpose()?;
         return Ok(form.map(|form| Known::form(form, None)));
     }
     match take_powers(&mut inside, &mut outside, coordinate) {
@@ -397,7 +446,10 @@ fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Known>, R
             let scale = Expr::divide(&(Expr::pi() * &outside), &Expr::from(2))?
                 .expand()?
                 .sqrt()?;
-            Ok(Some(Known::form(Expr::divide(&scale, &Expr::symbol("A"))?, None)))
+            Ok(Some(Known::form(
+                Expr::divide(&scale, &Expr::symbol("A"))?,
+                None,
+            )))
         }
         Some(power) if inside.is_empty() && power.odd && power.exponent > -Rational::one() => {
             let law = of_power(&outside, &Expr::number(power.exponent))?;

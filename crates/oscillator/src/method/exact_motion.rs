@@ -1,5 +1,6 @@
-//! The exact motion of the method `exact`, by quadratures of its own: the period and the harmonics of a motion between two
-//! turning points. With the judge it shares only what is integrated ([`crate::numeric::ode::energy`]), not the integral.
+//! The exact motion of the method `exact`, by quadratures of its own: the period and the harmonics
+//! of a motion between two turning points. With the judge it shares only what is integrated
+//! ([`crate::numeric::ode::energy`]), not the integral.
 
 use crate::conservative::force::Force as RestForce;
 use crate::numeric::ode::energy::{Force, PeriodError, Rates, turning_point};
@@ -8,14 +9,15 @@ use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth, nodes_a
 /// Harmonics of the exact motion.
 const HARMONICS: usize = 64;
 
-/// The period of the motion of a force released at the distance `start` from its equilibrium, and the coefficients of
-/// `cos(k theta)` of its position.
+/// The period of the motion of a force released at the distance `start` from its equilibrium, and
+/// the coefficients of `cos(k theta)` of its position.
 ///
 /// # Errors
 /// See [`PeriodError`].
 pub(super) fn motion_about(force: &RestForce, start: f64) -> Result<(f64, Vec<f64>), PeriodError> {
-    let (period, mut cosine) =
-        force.between_turning_points(start, |force, end| motion_between(force, &|_| 1.0, start, end))?;
+    let (period, mut cosine) = force.between_turning_points(start, |force, end| {
+        motion_between(force, &|_| 1.0, start, end)
+    })?;
     if let Some(mean) = cosine.first_mut() {
         *mean += force.equilibrium();
     }
@@ -28,14 +30,18 @@ pub(super) fn cosines(place: &dyn Fn(f64) -> f64) -> Vec<f64> {
     let angle = |i: usize| std::f64::consts::PI * (i as f64 + 0.5) / POINTS as f64;
     let places: Vec<f64> = (0..POINTS).map(|i| place(angle(i))).collect();
     let coefficient = |k: usize| {
-        let waves = places.iter().enumerate().map(|(i, x)| x * (k as f64 * angle(i)).cos());
+        let waves = places
+            .iter()
+            .enumerate()
+            .map(|(i, x)| x * (k as f64 * angle(i)).cos());
         waves.sum::<f64>() * if k == 0 { 1.0 } else { 2.0 } / POINTS as f64
     };
     (0..HARMONICS).map(coefficient).collect()
 }
 
-/// The period of a motion where the energy is `M x'^2/2 + U`, released at rest from `start`, and the coefficients of
-/// `cos(k theta)`: `force` is `U'` and `weight` the root of `M`, by which every instant takes longer.
+/// The period of a motion where the energy is `M x'^2/2 + U`, released at rest from `start`, and
+/// the coefficients of `cos(k theta)`: `force` is `U'` and `weight` the root of `M`, by which every
+/// instant takes longer.
 ///
 /// # Errors
 /// See [`PeriodError`].
@@ -45,14 +51,21 @@ pub(super) fn weighted_motion(
     equilibrium: f64,
     start: f64,
 ) -> Result<(f64, Vec<f64>), PeriodError> {
-    motion_between(force, weight, start, turning_point(force, equilibrium, start)?)
+    motion_between(
+        force,
+        weight,
+        start,
+        turning_point(force, equilibrium, start)?,
+    )
 }
 
-/// The period and the coefficients of `cos(k theta)` of the motion between two turning points, the first at `theta = 0`.
+/// The period and the coefficients of `cos(k theta)` of the motion between two turning points, the
+/// first at `theta = 0`.
 ///
-/// With `psi = pi/2 - phi` the rate `h = dt/dpsi` is an even, periodic function: its cosine series gives `omega t(psi)`, and
-/// sums over equal steps in `psi` give the coefficients, both to spectral accuracy for a smooth force. Where the force has
-/// corners or narrow places the same integrals are taken piece by piece.
+/// With `psi = pi/2 - phi` the rate `h = dt/dpsi` is an even, periodic function: its cosine series
+/// gives `omega t(psi)`, and sums over equal steps in `psi` give the coefficients, both to spectral
+/// accuracy for a smooth force. Where the force has corners or narrow places the same integrals are
+/// taken piece by piece.
 ///
 /// # Errors
 /// See [`PeriodError`].
@@ -84,7 +97,10 @@ fn motion_between(
         if (mean - last).abs() > 1e-9 * mean {
             return motion_by_pieces(&rates);
         }
-        let times = EqualSteps { rates: values, mean };
+        let times = EqualSteps {
+            rates: values,
+            mean,
+        };
         return Ok((
             2.0 * pi * mean,
             times.harmonics(0.5 * (start + end), 0.5 * (start - end)),
@@ -108,7 +124,9 @@ impl EqualSteps {
         let points = self.rates.len();
         let coefficient = |j: usize| {
             let terms = self.rates.iter().enumerate();
-            let sum: f64 = terms.map(|(i, rate)| rate * (j as f64 * self.angle(i)).cos()).sum();
+            let sum: f64 = terms
+                .map(|(i, rate)| rate * (j as f64 * self.angle(i)).cos())
+                .sum();
             2.0 * sum / points as f64
         };
         (1..points / 2).map(coefficient).collect()
@@ -137,8 +155,9 @@ impl EqualSteps {
     }
 }
 
-/// Period and coefficients by Gauss-Legendre panels in phi: the phase at the points of a panel is the integral of the
-/// Legendre series through the rates there. The panels are halved until their time agrees with the period.
+/// Period and coefficients by Gauss-Legendre panels in phi: the phase at the points of a panel is
+/// the integral of the Legendre series through the rates there. The panels are halved until their
+/// time agrees with the period.
 fn motion_by_pieces(rates: &Rates) -> Result<(f64, Vec<f64>), PeriodError> {
     const HALVINGS: u32 = 6;
     /// The longest panel, as a phase: the highest harmonic still has few waves on it.
@@ -170,10 +189,16 @@ fn motion_by_pieces(rates: &Rates) -> Result<(f64, Vec<f64>), PeriodError> {
                     let x = 0.5 * (start + end) + 0.5 * (start - end) * phi.sin();
                     for (k, coefficient) in coefficients.iter_mut().enumerate() {
                         let share = if k == 0 { 1.0 } else { 2.0 } / std::f64::consts::PI;
-                        *coefficient += share * x * (k as f64 * theta).cos() * rate * frequency * weight;
+                        *coefficient +=
+                            share * x * (k as f64 * theta).cos() * rate * frequency * weight;
                     }
                 }
-                phase += frequency * nodes.iter().zip(&values).map(|(node, rate)| node.1 * rate).sum::<f64>();
+                phase += frequency
+                    * nodes
+                        .iter()
+                        .zip(&values)
+                        .map(|(node, rate)| node.1 * rate)
+                        .sum::<f64>();
             }
         }
         // At the start the phase is zero again.
@@ -201,7 +226,9 @@ fn period_by_pieces(rates: &Rates) -> Result<f64, PeriodError> {
         let (time, error) = match integrate_smooth(rate, ends[0], ends[1], rates.tolerance(piece)) {
             // Below the rounding of the force no panel gets.
             Err(QuadratureError::NotConverged {
-                value, error_estimate, ..
+                value,
+                error_estimate,
+                ..
             }) => (value, error_estimate),
             found => found.map_err(|error| lost.unwrap_or(error))?,
         };
@@ -219,7 +246,8 @@ fn period_by_pieces(rates: &Rates) -> Result<f64, PeriodError> {
     }))
 }
 
-/// The integral from `from` to each node, through the Legendre series of the values: `int P_l = (P_(l+1) - P_(l-1))/(2l+1)`.
+/// The integral from `from` to each node, through the Legendre series of the values:
+/// `int P_l = (P_(l+1) - P_(l-1))/(2l+1)`.
 fn running_integral(nodes: &[(f64, f64)], values: &[f64], from: f64, to: f64) -> Vec<f64> {
     let half = 0.5 * (to - from);
     // P_0 to P_n at each node.
@@ -236,12 +264,15 @@ fn running_integral(nodes: &[(f64, f64)], values: &[f64], from: f64, to: f64) ->
     let series: Vec<f64> = (0..nodes.len())
         .map(|l| {
             let terms = nodes.iter().zip(values).zip(&polynomials);
-            let sum: f64 = terms.map(|((node, value), p)| node.1 / half * value * p[l]).sum();
+            let sum: f64 = terms
+                .map(|((node, value), p)| node.1 / half * value * p[l])
+                .sum();
             0.5 * (2.0 * l as f64 + 1.0) * sum
         })
         .collect();
     let integral = |p: &Vec<f64>| {
-        let higher = (1..nodes.len()).map(|l| series[l] * (p[l + 1] - p[l - 1]) / (2.0 * l as f64 + 1.0));
+        let higher =
+            (1..nodes.len()).map(|l| series[l] * (p[l + 1] - p[l - 1]) / (2.0 * l as f64 + 1.0));
         half * (series[0] * (p[1] + 1.0) + higher.sum::<f64>())
     };
     polynomials.iter().map(integral).collect()
@@ -255,7 +286,8 @@ mod tests {
     fn a_mass_that_grows_outwards_slows_the_motion() {
         // (1 + x^2)*x'' + x*x'^2 + x = 0 has the energy (1 + x^2) x'^2/2 + x^2/2.
         let weight = |x: f64| (1.0 + x * x).sqrt();
-        let (period, cosines) = weighted_motion(&Force::smooth(&|x| x), &weight, 0.0, 0.1).expect("a motion");
+        let (period, cosines) =
+            weighted_motion(&Force::smooth(&|x| x), &weight, 0.0, 0.1).expect("a motion");
         assert!(period > std::f64::consts::TAU && (cosines.iter().sum::<f64>() - 0.1).abs() < 1e-9);
     }
 }

@@ -1,8 +1,8 @@
 //! From a force with symbols to an exact expansion over whole numbers, and back.
 //!
-//! A symbol that enters in step with the order of a term (Duffing depends on `eps*A^2` alone) is left out while expanding and
-//! put back afterwards. Where that takes care of all symbols the expansion runs over whole numbers, otherwise over
-//! polynomials with whole coefficients.
+//! A symbol that enters in step with the order of a term (Duffing depends on `eps*A^2` alone) is
+//! left out while expanding and put back afterwards. Where that takes care of all symbols the
+//! expansion runs over whole numbers, otherwise over polynomials with whole coefficients.
 
 use std::collections::BTreeSet;
 
@@ -10,8 +10,8 @@ use num_integer::Integer as _;
 use num_traits::{One, ToPrimitive, Zero};
 
 use super::secular::{
-    Amplitude, Expansion, Extent, Factored, ForceTerm, Scheme, SecularError, expand_numbers_supervised,
-    expand_polynomials_supervised, expand_supervised,
+    Amplitude, Expansion, Extent, Factored, ForceTerm, Scheme, SecularError,
+    expand_numbers_supervised, expand_polynomials_supervised, expand_supervised,
 };
 use crate::derivation::{AmplitudeCondition, Condition, Step};
 use crate::exact::polynomial::Monomial;
@@ -41,8 +41,9 @@ pub struct ExactSeries {
 impl ExactSeries {
     /// Rewrites every coefficient.
     pub fn change_coefficients(&mut self, change: &dyn Fn(&Polynomial) -> Polynomial) {
-        let series =
-            |series: &FourierSeries<Polynomials>| series.map(POLYNOMIALS, |coefficient, _| change(coefficient));
+        let series = |series: &FourierSeries<Polynomials>| {
+            series.map(POLYNOMIALS, |coefficient, _| change(coefficient))
+        };
         self.frequency = change(&self.frequency);
         self.frequency_squared = change(&self.frequency_squared);
         self.displacement = series(&self.displacement);
@@ -60,9 +61,10 @@ impl ExactSeries {
     }
 }
 
-/// Expands to `order`; `terms` are in units of the amplitude and of the linear frequency, `delta` marks the order of each
-/// term of the result, `inverse_slope` is as for [`expand_from_root`](super::secular::expand_from_root), and no name in `taken` is used for anything new. Of the
-/// frequency alone, motion and steps are empty.
+/// Expands to `order`; `terms` are in units of the amplitude and of the linear frequency, `delta`
+/// marks the order of each term of the result, `inverse_slope` is as for
+/// [`expand_from_root`](super::secular::expand_from_root), and no name in `taken` is used for
+/// anything new. Of the frequency alone, motion and steps are empty.
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -88,37 +90,67 @@ pub fn expand_exactly(
             .iter()
             .map(|(symbol, rate)| (*symbol, rate * Rational::from_integer(n.into())));
         let start = delta.map_or_else(Monomial::one, |delta| Monomial::power_of(delta, n as i32));
-        powers
-            .filter(|(symbol, _)| Some(*symbol) != delta)
-            .fold(start, |monomial, (symbol, power)| {
-                monomial.product(&Monomial::power_of(symbol, power.to_integer().to_i32().unwrap_or(0)))
-            })
+        powers.filter(|(symbol, _)| Some(*symbol) != delta).fold(
+            start,
+            |monomial, (symbol, power)| {
+                monomial.product(&Monomial::power_of(
+                    symbol,
+                    power.to_integer().to_i32().unwrap_or(0),
+                ))
+            },
+        )
     };
-    let numbers: Option<Vec<Rational>> = reduced.iter().map(|term| term.coefficient.as_number()).collect();
+    let numbers: Option<Vec<Rational>> = reduced
+        .iter()
+        .map(|term| term.coefficient.as_number())
+        .collect();
     match numbers {
         Some(numbers) if inverse_slope.is_none() => {
-            let constant =
-                |number: Rational| FourierSeries::constant(Integers, number.numer().clone()).over(number.denom());
+            let constant = |number: Rational| {
+                FourierSeries::constant(Integers, number.numer().clone()).over(number.denom())
+            };
             let force = force_terms(&reduced, numbers.into_iter().map(constant));
-            let expansion = expand_numbers_supervised(&force, order as usize, scheme, extent, supervision)?;
+            let expansion =
+                expand_numbers_supervised(&force, order as usize, scheme, extent, supervision)?;
             Ok(collect(&expansion, scheme, over::<Integer>, restore, taken))
         }
         _ => {
-            let force = force_terms(&reduced, reduced.iter().map(|term| over_integers(&term.coefficient)));
+            let force = force_terms(
+                &reduced,
+                reduced.iter().map(|term| over_integers(&term.coefficient)),
+            );
             let expansion = match inverse_slope {
-                None => expand_polynomials_supervised(&force, order as usize, scheme, extent, supervision)?,
+                None => expand_polynomials_supervised(
+                    &force,
+                    order as usize,
+                    scheme,
+                    extent,
+                    supervision,
+                )?,
                 Some(inverse) => {
                     let inverse = over_integers(&without(inverse, &scales));
                     let ring = Polynomials(Integers);
-                    let mut expansion =
-                        expand_supervised(&ring, &force, order as usize, scheme, Some(inverse), supervision)?;
+                    let mut expansion = expand_supervised(
+                        &ring,
+                        &force,
+                        order as usize,
+                        scheme,
+                        Some(inverse),
+                        supervision,
+                    )?;
                     if extent == Extent::Frequency {
                         expansion.forget_motion();
                     }
                     expansion
                 }
             };
-            Ok(collect(&expansion, scheme, over::<Polynomial<Integer>>, restore, taken))
+            Ok(collect(
+                &expansion,
+                scheme,
+                over::<Polynomial<Integer>>,
+                restore,
+                taken,
+            ))
         }
     }
 }
@@ -141,8 +173,9 @@ impl Numerator for Polynomial<Integer> {
     }
 }
 
-/// From the numerators of a series over this denominator to polynomials. The denominators of an expansion have small prime factors
-/// alone: found once, they take the place of a greatest common divisor for each coefficient.
+/// From the numerators of a series over this denominator to polynomials. The denominators of an
+/// expansion have small prime factors alone: found once, they take the place of a greatest common
+/// divisor for each coefficient.
 fn over<N: Numerator>(denominator: &Integer) -> impl Fn(&N) -> Polynomial + use<'_, N> {
     let factored = Factored::of(denominator);
     move |numerator| {
@@ -153,7 +186,10 @@ fn over<N: Numerator>(denominator: &Integer) -> impl Fn(&N) -> Polynomial + use<
     }
 }
 
-fn force_terms<R: Ring>(terms: &[Term], coefficients: impl Iterator<Item = FourierSeries<R>>) -> Vec<ForceTerm<R>> {
+fn force_terms<R: Ring>(
+    terms: &[Term],
+    coefficients: impl Iterator<Item = FourierSeries<R>>,
+) -> Vec<ForceTerm<R>> {
     let pairs = terms.iter().zip(coefficients);
     let force = |(term, coefficient): (&Term, _)| ForceTerm {
         order: term.order,
@@ -168,15 +204,21 @@ fn force_terms<R: Ring>(terms: &[Term], coefficients: impl Iterator<Item = Fouri
 fn over_integers(polynomial: &Polynomial) -> FourierSeries<Polynomials<Integers>> {
     let common = polynomial
         .terms()
-        .fold(Integer::one(), |lcm, (_, coefficient)| lcm.lcm(coefficient.denom()));
+        .fold(Integer::one(), |lcm, (_, coefficient)| {
+            lcm.lcm(coefficient.denom())
+        });
     let numerators = polynomial.map(|coefficient| (coefficient * &common).to_integer());
     FourierSeries::constant(Polynomials(Integers), numerators).over(&common)
 }
 
-/// Every symbol whose exponent is the same multiple of the order in all terms, with that multiple: such a symbol enters the
-/// result in step with the small parameter and can be left out while expanding.
+/// Every symbol whose exponent is the same multiple of the order in all terms, with that multiple:
+/// such a symbol enters the result in step with the small parameter and can be left out while
+/// expanding.
 fn scales(terms: &[Term]) -> Vec<(Symbol, Rational)> {
-    let symbols: BTreeSet<Symbol> = terms.iter().flat_map(|term| term.coefficient.symbols()).collect();
+    let symbols: BTreeSet<Symbol> = terms
+        .iter()
+        .flat_map(|term| term.coefficient.symbols())
+        .collect();
     let rate = |symbol: Symbol| {
         let rates: BTreeSet<Rational> = terms
             .iter()
@@ -205,13 +247,16 @@ fn without(coefficient: &Polynomial, scales: &[(Symbol, Rational)]) -> Polynomia
     for (monomial, number) in coefficient.terms() {
         let rest = scales
             .iter()
-            .fold(monomial.clone(), |monomial, (symbol, _)| monomial.without(*symbol));
+            .fold(monomial.clone(), |monomial, (symbol, _)| {
+                monomial.without(*symbol)
+            });
         reduced.add_term(rest, number.clone());
     }
     reduced
 }
 
-/// Orders `0, 1, ...` put together as polynomials in the small parameter and the symbols that were scaled away.
+/// Orders `0, 1, ...` put together as polynomials in the small parameter and the symbols that were
+/// scaled away.
 fn collect<'a, R: Ring, P: Fn(&R::Element) -> Polynomial>(
     expansion: &'a Expansion<R>,
     scheme: &Scheme,
@@ -228,7 +273,11 @@ fn collect<'a, R: Ring, P: Fn(&R::Element) -> Polynomial>(
         })
     };
     let orders = |series: &'a [FourierSeries<R>]| -> Vec<FourierSeries<Polynomials>> {
-        series.iter().enumerate().map(|(n, series)| exact(series, n)).collect()
+        series
+            .iter()
+            .enumerate()
+            .map(|(n, series)| exact(series, n))
+            .collect()
     };
     let sum = |orders: &[FourierSeries<Polynomials>]| {
         let zero = FourierSeries::zero(POLYNOMIALS);
@@ -249,8 +298,10 @@ fn collect<'a, R: Ring, P: Fn(&R::Element) -> Polynomial>(
     };
     let step = |n: usize| {
         let driven = |series: &'a [FourierSeries<R>]| {
-            n.checked_sub(1)
-                .map_or_else(|| FourierSeries::zero(POLYNOMIALS), |index| exact(&series[index], n))
+            n.checked_sub(1).map_or_else(
+                || FourierSeries::zero(POLYNOMIALS),
+                |index| exact(&series[index], n),
+            )
         };
         Step {
             order: n as u32,
@@ -274,9 +325,13 @@ fn collect<'a, R: Ring, P: Fn(&R::Element) -> Polynomial>(
 fn conditions(n: usize, scheme: &Scheme) -> Vec<Condition> {
     match (n, scheme.normalisation, scheme.amplitude) {
         (0, ..) => vec![Condition::Position(1), Condition::AtRest],
-        (_, AmplitudeConvention::Initial, Amplitude::Free) => vec![Condition::Position(0), Condition::AtRest],
+        (_, AmplitudeConvention::Initial, Amplitude::Free) => {
+            vec![Condition::Position(0), Condition::AtRest]
+        }
         (_, AmplitudeConvention::Initial, Amplitude::Determined) => vec![Condition::AtRest],
-        (_, AmplitudeConvention::FirstHarmonic, Amplitude::Free) => vec![Condition::NoCosine, Condition::NoSine],
+        (_, AmplitudeConvention::FirstHarmonic, Amplitude::Free) => {
+            vec![Condition::NoCosine, Condition::NoSine]
+        }
         (_, AmplitudeConvention::FirstHarmonic, Amplitude::Determined) => vec![Condition::NoSine],
     }
 }

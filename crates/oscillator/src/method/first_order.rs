@@ -1,6 +1,7 @@
 //! The first order of the method of Lindstedt and Poincare for a force that is no polynomial.
 //!
-//! Reference: A. H. Nayfeh, *Perturbation Methods*, Wiley 1973, section 3.1, with the projection of `f_1` in closed form.
+//! Reference: A. H. Nayfeh, *Perturbation Methods*, Wiley 1973, section 3.1, with the projection of
+//! `f_1` in closed form.
 //!
 //! ```text
 //! x'' + omega0^2 x + eps f_1(x) = 0,   x = A cos(theta) + eps x_1 + ...,   omega^2 = omega0^2 + eps w_1 + ...
@@ -8,7 +9,8 @@
 //! no cos(theta) on the right:   w_1 = c_1(A)/A,   c_1 = (2/pi) int_0^pi f_1(A cos theta) cos(theta) dtheta
 //! ```
 //!
-//! The next order needs all harmonics of `f_1` along the motion: infinitely many where `f_1` is no polynomial.
+//! The next order needs all harmonics of `f_1` along the motion: infinitely many where `f_1` is no
+//! polynomial.
 //!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
@@ -32,8 +34,8 @@ use crate::solution::note::Cut;
 use crate::solution::{AmplitudeConvention, Method, Note, Solution};
 use crate::symbol::Symbol;
 
-/// The answer to first order in `small`; `None` where the equation is not conservative, not linear without `small`, or its
-/// projection has no closed form.
+/// The answer to first order in `small`; `None` where the equation is not conservative, not linear
+/// without `small`, or its projection has no closed form.
 ///
 /// # Errors
 /// An order above the first, or the amplitude of the first harmonic.
@@ -46,7 +48,9 @@ pub(super) fn solve(
 ) -> Result<Option<Solution>, Refusal> {
     let of_position = parts.of_position_alone();
     // That the rest is linear and restores is for the expansion to say.
-    let linear = oscillator.expand(SmallParameter::Parameter(small), 0).is_ok();
+    let linear = oscillator
+        .expand(SmallParameter::Parameter(small), 0)
+        .is_ok();
     let Some(force) = truncated(oscillator, small).filter(|_| of_position && linear) else {
         return Ok(None);
     };
@@ -54,10 +58,13 @@ pub(super) fn solve(
         return Ok(None);
     };
     if order > 1 {
-        // Of the whole force: what stands at a higher power of `small` may be what no polynomial is.
+        // Of the whole force: what stands at a higher power of `small` may be what no polynomial
+        // is.
         let force = &oscillator.force;
         let perturbation = (force - &force.substitute(small, &Expr::zero())?).expand()?;
-        return Err(not_polynomial(&perturbation, oscillator.coordinate).to(Method::LindstedtPoincare));
+        return Err(
+            not_polynomial(&perturbation, oscillator.coordinate).to(Method::LindstedtPoincare)
+        );
     }
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
         return Err(Unsuited::Convention.by(Refuser::FirstOrder));
@@ -70,8 +77,10 @@ pub(super) fn solve(
         Note::MotionAtLeadingOrder { small },
     ];
     note_even_part(&mut solution, oscillator, &force)?;
-    solution.derivation =
-        vec![Line::equation(oscillator.coordinate, solution.displacement.clone()).because(format!("at {small}^0"))];
+    solution.derivation = vec![
+        Line::equation(oscillator.coordinate, solution.displacement.clone())
+            .because(format!("at {small}^0")),
+    ];
     let law = integral_law(oscillator, &force, &solution)?;
     solution.derivation.extend(law);
     Ok(Some(solution))
@@ -115,7 +124,9 @@ mod tests {
         let cases: [Case; 6] = [
             ("x'' + 4*x + eps*sin(x) = 0", f64::sin),
             ("x'' + 4*x + eps*x*abs(x) = 0", |x| x * x.abs()),
-            ("x'' + 4*x + eps*x^3/(1 + x^2) = 0", |x| x.powi(3) / (1.0 + x * x)),
+            ("x'' + 4*x + eps*x^3/(1 + x^2) = 0", |x| {
+                x.powi(3) / (1.0 + x * x)
+            }),
             ("x'' + 4*x + eps*(exp(x) - 1) = 0", f64::exp_m1),
             ("x'' + 4*x + eps*sgn(x)*abs(x)^(3/2) = 0", |x| {
                 x.signum() * x.abs().powf(1.5)
@@ -129,7 +140,9 @@ mod tests {
             assert_eq!(solution.small_parameter, Symbol::new("eps"));
             for amplitude in [1e-6, 0.3, 2.5, -2.5] {
                 let numbers = BTreeMap::from([("A".into(), amplitude), ("eps".into(), 0.3)]);
-                let found = evaluate(&oscillator, &solution, &numbers).unwrap().frequency_squared;
+                let found = evaluate(&oscillator, &solution, &numbers)
+                    .unwrap()
+                    .frequency_squared;
                 let expected = 4.0 + 0.3 * projection(force, f64::abs(amplitude));
                 assert!(
                     (found - expected).abs() < 1e-8,

@@ -1,4 +1,5 @@
-//! Several drives without a ratio of their frequencies: one near the linear frequency, the others far from every resonance.
+//! Several drives without a ratio of their frequencies: one near the linear frequency, the others
+//! far from every resonance.
 //!
 //! Reference: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 4.1 and 4.4.
 //!
@@ -8,8 +9,9 @@
 //! u'' + omega0^2 u + eps <f(u + sum 2 Lambda_j cos(phi_j), u' - sum 2 Lambda_j W_j sin(phi_j))> = F cos(Omega t) + ...
 //! ```
 //!
-//! What the drives far from resonance hold is known beforehand. To the first order the slow equations of `u` are those of the force averaged
-//! over the phases `phi_j`, for no combination of the frequencies comes near omega0: `<(u + 2 Lambda cos phi)^3> = u^3 + 6 Lambda^2 u`.
+//! What the drives far from resonance hold is known beforehand. To the first order the slow
+//! equations of `u` are those of the force averaged over the phases `phi_j`, for no combination of
+//! the frequencies comes near omega0: `<(u + 2 Lambda cos phi)^3> = u^3 + 6 Lambda^2 u`.
 
 use std::collections::BTreeMap;
 
@@ -31,19 +33,25 @@ struct Forced {
     wave: Wave,
     /// `Lambda`.
     size: Definition,
-    /// The cosine and the sine of its phase, and its frequency, which stand for themselves while the force is averaged.
+    /// The cosine and the sine of its phase, and its frequency, which stand for themselves while
+    /// the force is averaged.
     letters: [Symbol; 3],
 }
 
-/// The answer to the first order in a small letter; `None` where no such letter is there, where a drive acts on more than the place alone, or
-/// where the frequencies that are numbers are near another resonance.
+/// The answer to the first order in a small letter; `None` where no such letter is there, where a
+/// drive acts on more than the place alone, or where the frequencies that are numbers are near
+/// another resonance.
 pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
-    let by_scales = options.method.is_none_or(|method| method == Method::MultipleScales);
+    let by_scales = options
+        .method
+        .is_none_or(|method| method == Method::MultipleScales);
     let first_order = options.order.is_none_or(|order| order == 1);
     if !by_scales || !first_order || options.resonance.is_some_and(|asked| asked != (1, 1)) {
         return None;
     }
-    let SmallParameter::Parameter(small) = oscillator.small_parameter(options.small.as_deref()).ok()? else {
+    let SmallParameter::Parameter(small) =
+        oscillator.small_parameter(options.small.as_deref()).ok()?
+    else {
         return None;
     };
     let parts = oscillator.parts().ok()?;
@@ -59,10 +67,23 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Soluti
     if has_quadratic_terms(&free) {
         return None;
     }
-    let without_small = parts.restoring.substitute(small, &Expr::zero()).ok()?.expand().ok()?;
+    let without_small = parts
+        .restoring
+        .substitute(small, &Expr::zero())
+        .ok()?
+        .expand()
+        .ok()?;
     let x = Expr::from(oscillator.coordinate);
-    let stiffness = without_small.differentiate(oscillator.coordinate).ok()?.expand().ok()?;
-    let is_linear = |force: &Expr| (force - &(&stiffness * &x)).expand().is_ok_and(|rest| rest.is_zero());
+    let stiffness = without_small
+        .differentiate(oscillator.coordinate)
+        .ok()?
+        .expand()
+        .ok()?;
+    let is_linear = |force: &Expr| {
+        (force - &(&stiffness * &x))
+            .expand()
+            .is_ok_and(|rest| rest.is_zero())
+    };
     if !is_linear(&without_small) || stiffness.is_zero() {
         return None;
     }
@@ -73,7 +94,8 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Soluti
     // Waves of other frequencies that have ratios among them act together.
     let alone = |(k, wave): (usize, &Wave)| {
         let mut rest = kept.iter().chain(&others[k + 1..]);
-        !rest.any(|other| number_between(&wave.rate, &other.rate).is_some()) && is_far(&wave.rate, &stiffness)
+        !rest.any(|other| number_between(&wave.rate, &other.rate).is_some())
+            && is_far(&wave.rate, &stiffness)
     };
     if others.is_empty() || !others.iter().enumerate().all(alone) {
         return None;
@@ -106,9 +128,18 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Soluti
     of_the_whole(solution, &forced, near, oscillator)
 }
 
-/// The answer of the averaged equation as one of the equation with all its drives: the motion to leading order.
-fn of_the_whole(mut solution: Solution, forced: &[Forced], near: Expr, oscillator: &Oscillator) -> Option<Solution> {
-    let still: BTreeMap<Symbol, Expr> = solution.small_parameters().map(|name| (name, Expr::zero())).collect();
+/// The answer of the averaged equation as one of the equation with all its drives: the motion to
+/// leading order.
+fn of_the_whole(
+    mut solution: Solution,
+    forced: &[Forced],
+    near: Expr,
+    oscillator: &Oscillator,
+) -> Option<Solution> {
+    let still: BTreeMap<Symbol, Expr> = solution
+        .small_parameters()
+        .map(|name| (name, Expr::zero()))
+        .collect();
     let response = solution.response.as_mut()?;
     let mut motion = vec![response.motion.substitute_all(&still).ok()?];
     for own in forced {
@@ -122,7 +153,9 @@ fn of_the_whole(mut solution: Solution, forced: &[Forced], near: Expr, oscillato
     response.motion = Expr::sum(motion);
     solution.equation = oscillator.equation();
     solution.parameters.clone_from(&oscillator.parameters);
-    solution.definitions.extend(forced.iter().map(|own| own.size.clone()));
+    solution
+        .definitions
+        .extend(forced.iter().map(|own| own.size.clone()));
     solution.validity.push(Note::ForcedWaves {
         near,
         far: forced.iter().map(|own| own.wave.rate.clone()).collect(),
@@ -138,8 +171,8 @@ fn plain(term: &Expr, oscillator: &Oscillator) -> Option<Wave> {
     (!moves(&wave.factor) && !moves(&wave.phase) && !moves(&wave.rate)).then_some(wave)
 }
 
-/// The frequency that is taken to be near the linear one: the nearest, where all are numbers; else that of the drive which the small letter
-/// makes as small as the damping; else the first.
+/// The frequency that is taken to be near the linear one: the nearest, where all are numbers; else
+/// that of the drive which the small letter makes as small as the damping; else the first.
 fn nearest(waves: &[Wave], small: Symbol, stiffness: &Expr) -> Expr {
     let distances: Option<Vec<f64>> = waves
         .iter()
@@ -147,19 +180,25 @@ fn nearest(waves: &[Wave], small: Symbol, stiffness: &Expr) -> Expr {
         .collect();
     let by_numbers = distances.and_then(|distances| {
         let all = distances.iter().enumerate();
-        all.min_by(|one, other| one.1.total_cmp(other.1)).map(|(k, _)| k)
+        all.min_by(|one, other| one.1.total_cmp(other.1))
+            .map(|(k, _)| k)
     });
     let weak = || waves.iter().position(|wave| wave.factor.contains(small));
     let chosen = by_numbers.or_else(weak).unwrap_or(0);
-    waves.get(chosen).map_or_else(Expr::one, |wave| wave.rate.clone())
+    waves
+        .get(chosen)
+        .map_or_else(Expr::one, |wave| wave.rate.clone())
 }
 
-/// Whether a frequency is not known to be near one at which a cubic or a quadratic force would be in resonance.
+/// Whether a frequency is not known to be near one at which a cubic or a quadratic force would be
+/// in resonance.
 fn is_far(rate: &Expr, stiffness: &Expr) -> bool {
     /// A part of the frequency as large as a detuning.
     const NEAR: f64 = 0.1;
-    let is_near = |ratio: f64, (p, q): (u32, u32)| (ratio * f64::from(q) / f64::from(p) - 1.0).abs() < NEAR;
-    ratio_of(rate, stiffness).is_none_or(|ratio| !RESONANCES.into_iter().any(|known| is_near(ratio, known)))
+    let is_near =
+        |ratio: f64, (p, q): (u32, u32)| (ratio * f64::from(q) / f64::from(p) - 1.0).abs() < NEAR;
+    ratio_of(rate, stiffness)
+        .is_none_or(|ratio| !RESONANCES.into_iter().any(|known| is_near(ratio, known)))
 }
 
 /// The ratio of two frequencies, where it is a positive number.
@@ -192,7 +231,11 @@ fn forced(waves: Vec<Wave>, stiffness: &Expr, oscillator: &Oscillator) -> Option
     let several = waves.len() > 1;
     let mut found = vec![];
     for (k, wave) in waves.into_iter().enumerate() {
-        let number = if several { (k + 1).to_string() } else { String::new() };
+        let number = if several {
+            (k + 1).to_string()
+        } else {
+            String::new()
+        };
         let squared = wave.rate.integer_power(2).ok()?;
         let below = Expr::from(2) * (stiffness - &squared).expand().ok()?;
         // The drive stands on the left side of the equation.
@@ -207,12 +250,17 @@ fn forced(waves: Vec<Wave>, stiffness: &Expr, oscillator: &Oscillator) -> Option
     Some(found)
 }
 
-/// The force along the motion and the forced waves, averaged over the phases of these; what does not depend on the motion, which shifts it
-/// by a part as small as the force, is left out.
+/// The force along the motion and the forced waves, averaged over the phases of these; what does
+/// not depend on the motion, which shifts it by a part as small as the force, is left out.
 fn averaged(force: &Expr, forced: &[Forced], oscillator: &Oscillator) -> Option<Expr> {
     let own = [oscillator.coordinate, oscillator.velocity()];
     let mut along = own.map(Expr::from);
-    for Forced { wave, size, letters } in forced {
+    for Forced {
+        wave,
+        size,
+        letters,
+    } in forced
+    {
         let [cosine, sine, rate] = letters.map(Expr::from);
         let (place, turned) = match wave.quadrature {
             Quadrature::Cosine => (cosine, -&sine),
@@ -240,11 +288,14 @@ fn averaged(force: &Expr, forced: &[Forced], oscillator: &Oscillator) -> Option<
             sum.add_term(rest, factor);
         }
     }
-    let rates = forced.iter().map(|own| (own.letters[2], own.wave.rate.clone()));
+    let rates = forced
+        .iter()
+        .map(|own| (own.letters[2], own.wave.rate.clone()));
     Expr::from(&sum).substitute_all(&rates.collect()).ok()
 }
 
-/// The mean of `cos^m sin^n` over a turn: `(m - 1)!! (n - 1)!!/(m + n)!!` where both are even, else zero.
+/// The mean of `cos^m sin^n` over a turn: `(m - 1)!! (n - 1)!!/(m + n)!!` where both are even, else
+/// zero.
 fn mean(m: i32, n: i32) -> Rational {
     if m % 2 != 0 || n % 2 != 0 {
         return Rational::zero();
@@ -281,8 +332,11 @@ mod tests {
             (3, 2),
             (1, 1),
         ] {
-            let angles = (0..STEPS).map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(STEPS));
-            let sum: f64 = angles.map(|angle| angle.cos().powi(m) * angle.sin().powi(n)).sum();
+            let angles =
+                (0..STEPS).map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(STEPS));
+            let sum: f64 = angles
+                .map(|angle| angle.cos().powi(m) * angle.sin().powi(n))
+                .sum();
             let found = crate::exact::rational::to_f64(&mean(m, n));
             assert!(
                 (found - sum / f64::from(STEPS)).abs() < 1e-14,

@@ -1,7 +1,8 @@
 //! He's one-line frequency formula: the slope of the force at half the amplitude.
 //!
-//! Reference: J.-H. He, *The simpler, the better: analytical methods for nonlinear oscillators and fractional oscillators*,
-//! J. Low Freq. Noise Vib. Act. Control 38 (2019) 1252-1260; formulas of this kind: K. Rapedius, arXiv:1502.00545.
+//! Reference: J.-H. He, *The simpler, the better: analytical methods for nonlinear oscillators and
+//! fractional oscillators*, J. Low Freq. Noise Vib. Act. Control 38 (2019) 1252-1260; formulas of
+//! this kind: K. Rapedius, arXiv:1502.00545.
 //!
 //! ```text
 //! x'' + f(x) = 0   ->   omega^2 = f'(x) at x = A/2
@@ -29,8 +30,8 @@ use crate::symbol::fresh;
 /// The frequency from the slope of the force at half the amplitude.
 ///
 /// # Errors
-/// A force that is not conservative or not odd, by its term; a slope that is zero at half the amplitude, as that of `sgn`;
-/// an order above the first.
+/// A force that is not conservative or not odd, by its term; a slope that is zero at half the
+/// amplitude, as that of `sgn`; an order above the first.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     const METHOD: Method = Method::FrequencyFormula;
     first_order_only(options, METHOD)?;
@@ -54,7 +55,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     };
     solution.derivation = vec![
         Line::equal([derivative, slope.into()]).because("slope of the force"),
-        Line::equation(Expr::symbol("omega").integer_power(2)?, law).because("its value at half the amplitude"),
+        Line::equation(Expr::symbol("omega").integer_power(2)?, law)
+            .because("its value at half the amplitude"),
     ];
     solution.validity.push(Note::SlopeAtHalf);
     Ok(solution)

@@ -1,4 +1,5 @@
-//! The steady motions of slow equations that are waves of the phase: the frequency-response equation and what follows from it.
+//! The steady motions of slow equations that are waves of the phase: the frequency-response
+//! equation and what follows from it.
 //!
 //! Reference: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, section 4.1.1.
 //!
@@ -7,9 +8,10 @@
 //! both zero, and cos^2 + sin^2 = 1:   P^2 + Q^2 = S^2 for one wave of size S
 //! ```
 //!
-//! Beyond the order of the waves that lead, cosine and sine follow in powers of what is small, and the relation is cut where the
-//! equations are: multiples of the phase may stand in them, which from the third order on they do, and of the steady motions that
-//! truncated equations have far from what is small most are gone.
+//! Beyond the order of the waves that lead, cosine and sine follow in powers of what is small, and
+//! the relation is cut where the equations are: multiples of the phase may stand in them, which
+//! from the third order on they do, and of the steady motions that truncated equations have far
+//! from what is small most are gone.
 
 use std::collections::BTreeMap;
 
@@ -54,7 +56,10 @@ impl FrequencyResponse {
                 let determinant = rate_cos.product(phase_sin) + minus(&rate_sin.product(phase_cos));
                 let cosine = rate_sin.product(phase) + minus(&rate.product(phase_sin));
                 let sine = phase_cos.product(rate) + minus(&rate_cos.product(phase));
-                (None, square(&cosine) + square(&sine) + minus(&square(&determinant)))
+                (
+                    None,
+                    square(&cosine) + square(&sine) + minus(&square(&determinant)),
+                )
             }
         };
         if rate.is_zero() && phase.is_zero() {
@@ -62,7 +67,8 @@ impl FrequencyResponse {
             return Self::of_relation(None, a);
         }
         let relation = without_common_powers(&relation);
-        // sigma = centre + and - the root of the square of a width, where the wave is free of it and the rest linear in it.
+        // sigma = centre + and - the root of the square of a width, where the wave is free of it
+        // and the rest linear in it.
         let by_sigma = Monomial::power_of(sigma, 1).product(&Monomial::power_of(a, 1));
         let weight = phase.coefficient(&by_sigma);
         let mut centre = phase.clone();
@@ -107,7 +113,9 @@ impl FrequencyResponse {
     /// From a relation alone.
     pub(super) fn of_relation(relation: Option<Polynomial>, a: Symbol) -> Self {
         let relation = relation.map(|relation| without_common_powers(&relation));
-        let (folds, jumps) = relation.as_ref().map_or((vec![], None), |relation| folds(relation, a));
+        let (folds, jumps) = relation
+            .as_ref()
+            .map_or((vec![], None), |relation| folds(relation, a));
         Self {
             relation,
             branches: None,
@@ -127,22 +135,32 @@ pub(super) fn turning(rate: &PhaseWaves) -> [Polynomial; 2] {
     rate.get(&1).cloned().unwrap_or_else(zero)
 }
 
-/// The relation between amplitude and detuning of two rates with multiples of the phase, in powers of a marker up to the order of the
-/// rates; `None` where multiples stand beside what leads, something comes before it, or nothing beside or after it.
+/// The relation between amplitude and detuning of two rates with multiples of the phase, in powers
+/// of a marker up to the order of the rates; `None` where multiples stand beside what leads,
+/// something comes before it, or nothing beside or after it.
 ///
 /// ```text
 /// M (c, s) = -(all else at c, s),   M the waves that lead:   c, s order by order,   c^2 + s^2 = 1
 /// ```
-pub(super) fn eliminated(rates: [&PhaseWaves; 2], marker: Symbol, order: i32, inverse: Symbol) -> Option<Polynomial> {
+pub(super) fn eliminated(
+    rates: [&PhaseWaves; 2],
+    marker: Symbol,
+    order: i32,
+    inverse: Symbol,
+) -> Option<Polynomial> {
     let lowest = |polynomial: &Polynomial| polynomial.exponent_range(marker).map(|range| range.0);
     let earliest = |wanted: &dyn Fn(u32) -> bool| {
         let waves = rates.iter().flat_map(|rate| rate.iter());
         let waves = waves.filter(|(multiple, _)| wanted(**multiple));
-        waves.flat_map(|(_, waves)| waves.iter().filter_map(lowest)).min()
+        waves
+            .flat_map(|(_, waves)| waves.iter().filter_map(lowest))
+            .min()
     };
     let leading = earliest(&|multiple| multiple == 1)?;
     let after = |found: Option<i32>, least: i32| found.is_none_or(|found| found >= least);
-    if !after(earliest(&|multiple| multiple == 0), leading) || !after(earliest(&|multiple| multiple > 1), leading + 1) {
+    if !after(earliest(&|multiple| multiple == 0), leading)
+        || !after(earliest(&|multiple| multiple > 1), leading + 1)
+    {
         return None;
     }
     let highest = order - leading;
@@ -153,7 +171,8 @@ pub(super) fn eliminated(rates: [&PhaseWaves; 2], marker: Symbol, order: i32, in
     let minus = |polynomial: &Polynomial| polynomial.map(|number| -number);
     // From here on the marker counts from the leading order.
     let down = Monomial::power_of(marker, -leading);
-    let matrix = rates.map(|rate| turning(rate).map(|wave| wave.times_monomial(&down).truncated(marker, 0)));
+    let matrix =
+        rates.map(|rate| turning(rate).map(|wave| wave.times_monomial(&down).truncated(marker, 0)));
     let [[a, b], [c, d]] = &matrix;
     let determinant = a.product(d) + minus(&b.product(c));
     if determinant.is_zero() {
@@ -165,7 +184,11 @@ pub(super) fn eliminated(rates: [&PhaseWaves; 2], marker: Symbol, order: i32, in
         let rest = |rate: &PhaseWaves, [by_cos, by_sin]: &[Polynomial; 2]| {
             let mut sum = minus(&(by_cos.product(&cosine) + by_sin.product(&sine)));
             for (multiple, waves) in rate {
-                for (wave, value) in waves.iter().zip(multiple_of(*multiple, [&cosine, &sine], &cut)) {
+                for (wave, value) in
+                    waves
+                        .iter()
+                        .zip(multiple_of(*multiple, [&cosine, &sine], &cut))
+                {
                     sum.accumulate(&cut(&wave.times_monomial(&down).product(&value)));
                 }
             }
@@ -178,7 +201,8 @@ pub(super) fn eliminated(rates: [&PhaseWaves; 2], marker: Symbol, order: i32, in
         ];
         [cosine, sine] = solved.map(|value| cut(&value.product(&over)));
     }
-    // Where all else comes d after the waves, so do c and s, and their squares are known to as many orders behind the first: that is twice d.
+    // Where all else comes d after the waves, so do c and s, and their squares are known to as many
+    // orders behind the first: that is twice d.
     let behind = [&cosine, &sine].into_iter().filter_map(lowest).min()?;
     let squares = cosine.product(&cosine) + sine.product(&sine);
     let mut relation = squares.truncated(marker, highest + behind);
@@ -192,10 +216,12 @@ pub(super) fn eliminated(rates: [&PhaseWaves; 2], marker: Symbol, order: i32, in
         whole.accumulate(&term.product(&times));
     }
     // Of one wave of size S the determinant is S^2: once is enough for P^2 + Q^2 = S^2.
-    Some(match determinant.map(|number| number.abs()).power(1 - most) {
-        Some(less) => whole.product(&less),
-        None => whole,
-    })
+    Some(
+        match determinant.map(|number| number.abs()).power(1 - most) {
+            Some(less) => whole.product(&less),
+            None => whole,
+        },
+    )
 }
 
 /// Cosine and sine of a multiple of an angle, from those of the angle.
@@ -218,14 +244,17 @@ fn multiple_of(
 
 /// A relation with the powers that all terms have in common taken out.
 fn without_common_powers(relation: &Polynomial) -> Polynomial {
-    relation.symbols().into_iter().fold(relation.clone(), |rest, name| {
-        let lowest = rest.exponent_range(name).map_or(0, |range| range.0);
-        rest.times_monomial(&Monomial::power_of(name, -lowest))
-    })
+    relation
+        .symbols()
+        .into_iter()
+        .fold(relation.clone(), |rest, name| {
+            let lowest = rest.exponent_range(name).map_or(0, |range| range.0);
+            rest.times_monomial(&Monomial::power_of(name, -lowest))
+        })
 }
 
-/// The largest amplitude, where `P^2 = S^2` with `P` in one power of the amplitude, or in that itself and a constant that drain
-/// both, and `S` in none. Symbols count as positive.
+/// The largest amplitude, where `P^2 = S^2` with `P` in one power of the amplitude, or in that
+/// itself and a constant that drain both, and `S` in none. Symbols count as positive.
 fn peak_of(rate: &Polynomial, drive: &Polynomial, a: Symbol) -> Option<Expr> {
     if drive.symbols().contains(&a) {
         return None;
@@ -238,10 +267,16 @@ fn peak_of(rate: &Polynomial, drive: &Polynomial, a: Symbol) -> Option<Expr> {
         }
         let pace = Polynomial::term(monomial.without(a), number.abs());
         let quotient = size.product(&pace.power(-1)?);
-        return Expr::power(&Expr::from(&quotient), &Expr::number(ratio(1, power.into()))).ok();
+        return Expr::power(
+            &Expr::from(&quotient),
+            &Expr::number(ratio(1, power.into())),
+        )
+        .ok();
     }
     let [(by, pace), (held, friction)] = [1, 0].map(|power| {
-        let mut terms = rate.terms().filter(|(monomial, _)| monomial.exponent(a) == power);
+        let mut terms = rate
+            .terms()
+            .filter(|(monomial, _)| monomial.exponent(a) == power);
         let found = terms.next().filter(|(_, number)| number.is_negative());
         let only = found.filter(|_| terms.next().is_none());
         only.map_or((None, None), |(monomial, number)| {
@@ -257,7 +292,8 @@ fn peak_of(rate: &Polynomial, drive: &Polynomial, a: Symbol) -> Option<Expr> {
     Expr::divide(&left, &Expr::from(&pace)).ok()?.expand().ok()
 }
 
-/// The coefficients of a polynomial in the square of the amplitude, lowest first; `None` where it has odd powers.
+/// The coefficients of a polynomial in the square of the amplitude, lowest first; `None` where it
+/// has odd powers.
 fn in_square(relation: &Polynomial, a: Symbol) -> Option<Vec<Polynomial>> {
     let mut coefficients: Vec<Polynomial> = vec![];
     for (monomial, number) in relation.terms() {
@@ -273,19 +309,24 @@ fn in_square(relation: &Polynomial, a: Symbol) -> Option<Vec<Polynomial>> {
     Some(coefficients)
 }
 
-/// Where two steady motions meet: their squared amplitudes by the detuning, and the discriminant that vanishes there.
+/// Where two steady motions meet: their squared amplitudes by the detuning, and the discriminant
+/// that vanishes there.
 fn folds(relation: &Polynomial, a: Symbol) -> (Vec<Expr>, Option<Polynomial>) {
     let Some(coefficients) = in_square(relation, a) else {
         return (vec![], None);
     };
     let product = |factors: &[&Polynomial], number: i64| {
         let start = Polynomial::constant(ratio(number, 1));
-        factors.iter().fold(start, |product, factor| product.product(factor))
+        factors
+            .iter()
+            .fold(start, |product, factor| product.product(factor))
     };
     match coefficients.as_slice() {
         [c, b, a] => (
             vec![],
-            Some(without_common_powers(&(product(&[b, b], 1) + product(&[a, c], -4)))),
+            Some(without_common_powers(
+                &(product(&[b, b], 1) + product(&[a, c], -4)),
+            )),
         ),
         [d, c, b, a] => {
             let discriminant = product(&[a, b, c, d], 18)
@@ -303,7 +344,10 @@ fn folds(relation: &Polynomial, a: Symbol) -> (Vec<Expr>, Option<Polynomial>) {
                 let width = &Expr::from(&outside.product(&over)) * &root;
                 Some(vec![&middle - &width, &middle + &width])
             };
-            (places().unwrap_or_default(), Some(without_common_powers(&discriminant)))
+            (
+                places().unwrap_or_default(),
+                Some(without_common_powers(&discriminant)),
+            )
         }
         _ => (vec![], None),
     }

@@ -1,6 +1,8 @@
-//! The Hamiltonian approach: the mean Hamiltonian of a one-term motion made stationary in the amplitude.
+//! The Hamiltonian approach: the mean Hamiltonian of a one-term motion made stationary in the
+//! amplitude.
 //!
-//! Reference: J.-H. He, *Hamiltonian approach to nonlinear oscillators*, Phys. Lett. A 374 (2010) 2312-2314.
+//! Reference: J.-H. He, *Hamiltonian approach to nonlinear oscillators*, Phys. Lett. A 374 (2010)
+//! 2312-2314.
 //!
 //! ```text
 //! H = x'^2/2 + V(x),   V' = f,   x = A cos(omega t)
@@ -8,8 +10,8 @@
 //! d/dA dh/d(1/omega) = 0   ->   omega^2 = (2/A) d<V>/dA,   <V> = (1/pi) int_0^pi V(A cos theta) dtheta
 //! ```
 //!
-//! The mean is taken of the potential in closed form and then differentiated; where there is none the derivative is taken
-//! under the integral, which leaves the [shared integral](super::one_term).
+//! The mean is taken of the potential in closed form and then differentiated; where there is none
+//! the derivative is taken under the integral, which leaves the [shared integral](super::one_term).
 //!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
@@ -20,7 +22,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use super::one_term::{conservative_force, first_order_only, note_even_part, set_law, solve_by_integral, unsolved};
+use super::one_term::{
+    conservative_force, first_order_only, note_even_part, set_law, solve_by_integral, unsolved,
+};
 use super::{Options, Refusal};
 use crate::conservative::potential::potential;
 use crate::conservative::projection::cosine_coefficient;
@@ -40,7 +44,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     first_order_only(options, METHOD)?;
     let force = conservative_force(oscillator, options, METHOD)?;
     let amplitude = Expr::symbol("A");
-    // The derivative of an arc's edge cancels, but leaves its traces: arcs are differentiated under the integral.
+    // The derivative of an arc's edge cancels, but leaves its traces: arcs are differentiated under
+    // the integral.
     let has_arcs = force.contains_function(Function::Step);
     let mean_of = |potential: &Expr| {
         let twice = cosine_coefficient(potential, oscillator.coordinate, &amplitude, 0)?;
@@ -48,7 +53,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     };
     let law = |mean: &Expr| {
         let slope = mean.differentiate("A".into()).ok()?;
-        Expr::divide(&(Expr::from(2) * slope), &amplitude).ok()?.expand().ok()
+        Expr::divide(&(Expr::from(2) * slope), &amplitude)
+            .ok()?
+            .expand()
+            .ok()
     };
     let stationary = |potential: Expr| {
         let mean = mean_of(&potential)?;
@@ -80,11 +88,18 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     };
     solution.derivation = vec![
         Line::equation(fresh("V", &names), potential).because("potential energy"),
-        Line::equal([mean_name.into(), integral, mean.into()]).because(format!("its mean over {AMPLITUDE}*cos(θ)")),
-        Line::equal([Expr::symbol("omega").integer_power(2)?.into(), slope, law.into()])
-            .because("the mean Hamiltonian is stationary"),
+        Line::equal([mean_name.into(), integral, mean.into()])
+            .because(format!("its mean over {AMPLITUDE}*cos(θ)")),
+        Line::equal([
+            Expr::symbol("omega").integer_power(2)?.into(),
+            slope,
+            law.into(),
+        ])
+        .because("the mean Hamiltonian is stationary"),
     ];
-    solution.validity.push(Note::FirstStep(FirstStep::TermOfForce));
+    solution
+        .validity
+        .push(Note::FirstStep(FirstStep::TermOfForce));
     note_even_part(&mut solution, oscillator, &force)?;
     Ok(solution)
 }

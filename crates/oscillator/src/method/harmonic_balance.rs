@@ -1,15 +1,16 @@
 //! Harmonic balance: as many harmonics as wanted, each balanced.
 //!
-//! References: R. E. Mickens, *Truly Nonlinear Oscillations*, World Scientific 2010, chapter 3; M. Krack, J. Gross, *Harmonic
-//! Balance for Nonlinear Vibration Problems*, Springer 2019, chapters 2 and 4 (sampling in time, continuation).
+//! References: R. E. Mickens, *Truly Nonlinear Oscillations*, World Scientific 2010, chapter 3; M.
+//! Krack, J. Gross, *Harmonic Balance for Nonlinear Vibration Problems*, Springer 2019, chapters 2
+//! and 4 (sampling in time, continuation).
 //!
 //! ```text
 //! x = sum_k a_k cos(k theta),   k = 1, 3, ..., 2n-1 for an odd force, 0, 1, ..., n otherwise,   A = sum_k a_k
 //! -k^2 omega^2 a_k + c_k = 0,   c_k = (2/pi) int_0^pi f(x(theta)) cos(k theta) dtheta          (c_0 counts half)
 //! ```
 //!
-//! One harmonic of an odd force is solved in closed form. Beyond that the system is printed, and solved at an amplitude by
-//! [`balance`](super::balance::balance).
+//! One harmonic of an odd force is solved in closed form. Beyond that the system is printed, and
+//! solved at an amplitude by [`balance`](super::balance::balance).
 //!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
@@ -43,7 +44,8 @@ const METHOD: Method = Method::HarmonicBalance;
 /// The most harmonics.
 pub const MOST_HARMONICS: u32 = 100;
 
-/// The longest system that is written out, in terms: fifteen harmonics of a cubic force. Beyond, nobody reads it.
+/// The longest system that is written out, in terms: fifteen harmonics of a cubic force. Beyond,
+/// nobody reads it.
 const MOST_TERMS: usize = 3500;
 
 /// The balance of so many harmonics, two by default.
@@ -66,7 +68,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         && let Some(law) = shared_integral(oscillator, &force)
     {
         set_law(&mut solution, &law)?;
-        solution.derivation = vec![Line::equation(oscillator.coordinate, solution.displacement.clone())];
+        solution.derivation = vec![Line::equation(
+            oscillator.coordinate,
+            solution.displacement.clone(),
+        )];
         let law = integral_law(oscillator, &force, &solution)?;
         solution.derivation.extend(law);
         solution.validity.push(Note::FirstStep(FirstStep::Harmonic));
@@ -79,8 +84,20 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         cosine[k] = Polynomial::symbol(name);
     }
     solution.displacement = FourierSeries::from_parts(POLYNOMIALS, cosine, vec![]);
-    solution.derivation = projections(oscillator, &force, &harmonics, &names, &solution.displacement)?;
-    match equations(oscillator, &force, &harmonics, &names, &solution.displacement)? {
+    solution.derivation = projections(
+        oscillator,
+        &force,
+        &harmonics,
+        &names,
+        &solution.displacement,
+    )?;
+    match equations(
+        oscillator,
+        &force,
+        &harmonics,
+        &names,
+        &solution.displacement,
+    )? {
         Some(equations) => {
             if equations
                 .iter()
@@ -91,7 +108,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
                 solution.validity.push(Note::ArcsFor { positive: first });
             }
             let unknowns = std::iter::once(Symbol::new("omega")).chain(names).collect();
-            solution.law = Law::System(System { unknowns, equations });
+            solution.law = Law::System(System {
+                unknowns,
+                equations,
+            });
         }
         None => {
             solution.law = Law::Quadrature(solution.derivation.clone());
@@ -123,13 +143,19 @@ fn projections(
             integrand: Box::new((force * &(&k * &Expr::from(oscillator.phase())).cos()?).into()),
             variable: oscillator.phase(),
         };
-        Ok(Line::equation(k.integer_power(2)? * &omega * name, integral))
+        Ok(Line::equation(
+            k.integer_power(2)? * &omega * name,
+            integral,
+        ))
     };
     let mut lines = vec![Line::equation(oscillator.coordinate, motion.clone())];
     if harmonics.len() <= MOST_LINES {
         for (&k, &name) in harmonics.iter().zip(names) {
             let factor = if k == 0 { 1 } else { 2 };
-            lines.push(balance(Expr::from(k as i64), name.into(), factor)?.because(format!("harmonic {k}")));
+            lines.push(
+                balance(Expr::from(k as i64), name.into(), factor)?
+                    .because(format!("harmonic {k}")),
+            );
         }
     } else {
         let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();
@@ -137,7 +163,10 @@ fn projections(
         let letter = letter.trim_end_matches(|digit: char| digit.is_ascii_digit() || digit == '_');
         let taken = oscillator.names();
         let (k, coefficient) = (fresh("k", &taken), fresh(&format!("{letter}_k"), &taken));
-        lines.push(balance(k.into(), coefficient.into(), 2)?.because(format!("harmonics {k} = {}", kept.join(", "))));
+        lines.push(
+            balance(k.into(), coefficient.into(), 2)?
+                .because(format!("harmonics {k} = {}", kept.join(", "))),
+        );
     }
     lines.push(Line::equation(
         "A",
@@ -158,10 +187,14 @@ pub(super) fn harmonics(order: u32, odd: bool) -> Vec<usize> {
 /// `a1`, `a3`, ...; another stem where the equation uses one of these.
 pub(super) fn coefficient_names(oscillator: &Oscillator, harmonics: &[usize]) -> Vec<Symbol> {
     let stem = fresh_stem("a", &oscillator.names());
-    harmonics.iter().map(|k| Symbol::new(&format!("{stem}{k}"))).collect()
+    harmonics
+        .iter()
+        .map(|k| Symbol::new(&format!("{stem}{k}")))
+        .collect()
 }
 
-/// The balance of every harmonic and the amplitude condition, where the force allows it in closed form.
+/// The balance of every harmonic and the amplitude condition, where the force allows it in closed
+/// form.
 fn equations(
     oscillator: &Oscillator,
     force: &Expr,
@@ -186,7 +219,8 @@ fn equations(
         for (&k, &name) in harmonics.iter().zip(names) {
             let coefficient = along.cosine(k);
             let (numerator, denominator) = coefficient.mean();
-            let mut equation = numerator.map(|value| value / Rational::from_integer(denominator.clone()));
+            let mut equation =
+                numerator.map(|value| value / Rational::from_integer(denominator.clone()));
             equation.accumulate(&inertia(k, name));
             equations.push(Expr::from(&equation));
         }
@@ -197,9 +231,14 @@ fn equations(
             ([1], [a1]) => (Expr::zero(), Expr::from(*a1)),
             _ => return Ok(None),
         };
-        let moved = force.substitute(oscillator.coordinate, &(Expr::from(oscillator.coordinate) + shift))?;
+        let moved = force.substitute(
+            oscillator.coordinate,
+            &(Expr::from(oscillator.coordinate) + shift),
+        )?;
         for (&k, &name) in harmonics.iter().zip(names) {
-            let Some(coefficient) = cosine_coefficient(&moved, oscillator.coordinate, &amplitude, k) else {
+            let Some(coefficient) =
+                cosine_coefficient(&moved, oscillator.coordinate, &amplitude, k)
+            else {
                 return Ok(None);
             };
             let half = if k == 0 {
@@ -213,6 +252,9 @@ fn equations(
     }
     let sum = Expr::sum(names.iter().map(|&name| Expr::from(name)));
     equations.push(sum - Expr::symbol("A"));
-    let length: usize = equations.iter().map(|equation| equation.terms().len()).sum();
+    let length: usize = equations
+        .iter()
+        .map(|equation| equation.terms().len())
+        .sum();
     Ok((length <= MOST_TERMS).then_some(equations))
 }

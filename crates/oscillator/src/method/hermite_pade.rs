@@ -1,7 +1,8 @@
-//! Quadratic Hermite-Pade approximants of omega^2: roots of a quadratic equation whose coefficients are polynomials.
+//! Quadratic Hermite-Pade approximants of omega^2: roots of a quadratic equation whose coefficients
+//! are polynomials.
 //!
-//! References: R. E. Shafer, *On quadratic approximation*, SIAM J. Numer. Anal. 11 (1974) 447-460; G. A. Baker, P. Graves-Morris,
-//! *Pade Approximants*, 2nd ed., Cambridge 1996, section 8.6.
+//! References: R. E. Shafer, *On quadratic approximation*, SIAM J. Numer. Anal. 11 (1974) 447-460;
+//! G. A. Baker, P. Graves-Morris, *Pade Approximants*, 2nd ed., Cambridge 1996, section 8.6.
 //!
 //! ```text
 //! omega^2 = c_0 f,   f = 1 + f_1 s + f_2 s^2 + ...,   s = A^2 or the small parameter, times the symbols that enter in step with it
@@ -9,14 +10,17 @@
 //! f = (-Q + S sqrt(D))/(2 R) = -2 P/(Q + S sqrt(D)),   D = Q^2 - 4 P R,   2 R + Q > 0 and S = 1 at s = 0
 //! ```
 //!
-//! Where a quotient lines up poles along a cut of omega^2, this has branch points of its own. The root is followed from rest: it goes
-//! on without a jump as long as D does not vanish, and ends where D has a single zero or the root is infinite. Where both roots meet
-//! so closely that D has two zeros all but in one place, they cross: the difference of the roots passes through zero like `s - m`, and
-//! S is the other sign from there on. All zeros of D and of R on the way are [counted for certain](crate::exact::zero_clusters).
+//! Where a quotient lines up poles along a cut of omega^2, this has branch points of its own. The
+//! root is followed from rest: it goes on without a jump as long as D does not vanish, and ends
+//! where D has a single zero or the root is infinite. Where both roots meet so closely that D has
+//! two zeros all but in one place, they cross: the difference of the roots passes through zero like
+//! `s - m`, and S is the other sign from there on. All zeros of D and of R on the way are
+//! [counted for certain](crate::exact::zero_clusters).
 //!
-//! Both forms of the root are quotients `N_i/M_i`. Where R vanishes and it is the other root that is infinite, the first is 0/0; so is
-//! the second where P vanishes and it is the other root that is zero. The root goes on through either: where each of the forms has such a
-//! place on the way, their mediant is the formula, which has none,
+//! Both forms of the root are quotients `N_i/M_i`. Where R vanishes and it is the other root that
+//! is infinite, the first is 0/0; so is the second where P vanishes and it is the other root that
+//! is zero. The root goes on through either: where each of the forms has such a place on the way,
+//! their mediant is the formula, which has none,
 //!
 //! ```text
 //! f = (M_1 N_1 + M_2 N_2)/(M_1^2 + M_2^2) = 2 (S sqrt(D) (R - P) - Q (P + R))/(4 R^2 + (Q + S sqrt(D))^2)
@@ -54,7 +58,8 @@ const METHOD: Method = Method::HermitePade;
 /// The largest degree of each of the three.
 const LARGEST_DEGREE: u32 = 40;
 
-/// The degrees to try in turn where none are given: a series whose first power is missing may have no approximant of the first of them.
+/// The degrees to try in turn where none are given: a series whose first power is missing may have
+/// no approximant of the first of them.
 const DEFAULTS: [Degrees; 3] = [
     Degrees::Quadratic(1, 1, 1),
     Degrees::Quadratic(2, 2, 2),
@@ -64,7 +69,8 @@ const DEFAULTS: [Degrees; 3] = [
 /// The approximant of the degrees in the options; by default `[1/1/1]`, or the next that there is.
 ///
 /// # Errors
-/// As for the method of Lindstedt and Poincare; degrees without an approximant, and one whose root cannot be followed.
+/// As for the method of Lindstedt and Poincare; degrees without an approximant, and one whose root
+/// cannot be followed.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     if let Some(degrees) = options.degrees {
         return of_degrees(oscillator, options, degrees);
@@ -80,7 +86,11 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     answers.find_map(Result::ok).ok_or(refusal)
 }
 
-fn of_degrees(oscillator: &Oscillator, options: &Options, degrees: Degrees) -> Result<Solution, Refusal> {
+fn of_degrees(
+    oscillator: &Oscillator,
+    options: &Options,
+    degrees: Degrees,
+) -> Result<Solution, Refusal> {
     let refused = |reason| Refusal::Approximant {
         method: METHOD,
         degrees,
@@ -93,7 +103,8 @@ fn of_degrees(oscillator: &Oscillator, options: &Options, degrees: Degrees) -> R
         return Err(refused("degrees go up to [40/40/40]"));
     }
     let order = p + q + r + 1;
-    let resummed = Resummed::of(oscillator, options, (METHOD, order))?.ok_or_else(|| refused(STOPPED))?;
+    let resummed =
+        Resummed::of(oscillator, options, (METHOD, order))?.ok_or_else(|| refused(STOPPED))?;
     let mut resummed = resummed;
     resummed.write_squares_by_their_roots();
     let series = &resummed.series;
@@ -105,15 +116,23 @@ fn of_degrees(oscillator: &Oscillator, options: &Options, degrees: Degrees) -> R
         .ok_or_else(|| Unsuited::SeveralVariables.to(METHOD))?;
     // f begins with one; what it is a multiple of stands before the law.
     let first = numbers[0].clone();
-    numbers.iter_mut().for_each(|number| *number = &*number / &first);
+    numbers
+        .iter_mut()
+        .for_each(|number| *number = &*number / &first);
     numbers.resize(order as usize + 1, Rational::zero());
-    let quadratic = Quadratic::of(&numbers, [p, q, r].map(|degree| degree as usize)).map_err(refused)?;
+    let quadratic =
+        Quadratic::of(&numbers, [p, q, r].map(|degree| degree as usize)).map_err(refused)?;
     // What is squared has one sign.
-    let squared = variable.factors().iter().all(|(_, exponent)| exponent % 2 == 0);
+    let squared = variable
+        .factors()
+        .iter()
+        .all(|(_, exponent)| exponent % 2 == 0);
     let sides: &[i64] = if squared { &[1] } else { &[1, -1] };
-    let root = quadratic
-        .followed(sides)
-        .ok_or_else(|| refused("its root cannot be followed: zeros of its discriminant are too close to each other"))?;
+    let root = quadratic.followed(sides).ok_or_else(|| {
+        refused(
+            "its root cannot be followed: zeros of its discriminant are too close to each other",
+        )
+    })?;
     let in_words = Words::new(&resummed.names(), variable);
     let (value, definitions) = in_words.law(&quadratic, &root)?;
     if !definitions[..3].iter().all(|own| has_values(&own.meaning)) {
@@ -135,7 +154,8 @@ fn of_degrees(oscillator: &Oscillator, options: &Options, degrees: Degrees) -> R
     Ok(resummed.answer(degrees, (value, definitions), (notes, derivation)))
 }
 
-/// `P + Q f + R f^2`, the lowest powers first: whole numbers without a common factor, `2 R + Q` positive at zero.
+/// `P + Q f + R f^2`, the lowest powers first: whole numbers without a common factor, `2 R + Q`
+/// positive at zero.
 struct Quadratic {
     lists: [Vec<Integer>; 3],
 }
@@ -239,14 +259,20 @@ impl Quadratic {
         // The zeros of P only tell which form is written.
         followed.indeterminate[1] |= zeros_of_p.is_none();
         let zeros_of_p = zeros_of_p.unwrap_or_default();
-        let (mut zeros_of_p, mut zeros_of_r) = (zeros_of_p.iter().peekable(), zeros_of_r.iter().peekable());
+        let (mut zeros_of_p, mut zeros_of_r) =
+            (zeros_of_p.iter().peekable(), zeros_of_r.iter().peekable());
         let mut is_upper = true;
-        let place = |cluster: &Cluster| Rational::from_integer(side.into()) * cluster.place.to_fraction();
-        // Where Q has the sign of the root of D, R vanishes with `S sqrt(D) - Q`; elsewhere P does with `Q + S sqrt(D)`.
+        let place =
+            |cluster: &Cluster| Rational::from_integer(side.into()) * cluster.place.to_fraction();
+        // Where Q has the sign of the root of D, R vanishes with `S sqrt(D) - Q`; elsewhere P does
+        // with `Q + S sqrt(D)`.
         let same_sign = |zero: &&Cluster, is_upper: bool| {
             let nothing = BigFloat::zero(bits);
             let start = nothing.clone();
-            let value = q.iter().rev().fold(start, |sum, number| &(&sum * &zero.place) + number);
+            let value = q
+                .iter()
+                .rev()
+                .fold(start, |sum, number| &(&sum * &zero.place) + number);
             (value > nothing) == is_upper
         };
         for meeting in meetings.iter().map(Some).chain([None]) {
@@ -258,7 +284,9 @@ impl Quadratic {
                     false => end = Some(zero),
                 }
             }
-            while let Some(zero) = zeros_of_p.next_if(|zero| end.map_or(before(zero), |end| zero.place < end.place)) {
+            while let Some(zero) =
+                zeros_of_p.next_if(|zero| end.map_or(before(zero), |end| zero.place < end.place))
+            {
                 followed.indeterminate[1] |= !same_sign(&zero, is_upper);
             }
             if let Some(pole) = end {
@@ -274,7 +302,10 @@ impl Quadratic {
             let middle = place(meeting);
             let distance = crate::exact::from_f64(meeting.distance.abs())?;
             // D is negative from here on, if nothing follows.
-            let says_so = meeting.count == 1 && meetings.last().is_some_and(|last| std::ptr::eq(last, meeting));
+            let says_so = meeting.count == 1
+                && meetings
+                    .last()
+                    .is_some_and(|last| std::ptr::eq(last, meeting));
             followed
                 .ends
                 .push((&middle - &middle * distance, RootEnd::Meets, says_so));
@@ -305,13 +336,18 @@ impl Words {
     }
 
     /// f by the letters, and what they stand for; the first three are P, Q and R.
-    fn law(&self, quadratic: &Quadratic, root: &Followed) -> Result<(Expr, Vec<Definition>), ExprError> {
+    fn law(
+        &self,
+        quadratic: &Quadratic,
+        root: &Followed,
+    ) -> Result<(Expr, Vec<Definition>), ExprError> {
         let [p, q, r, s] = self.letters.map(Expr::from);
         let two = Expr::from(2);
         let discriminant = &(&q * &q) - &(&Expr::from(4) * &(&p * &r));
         let square = match root.crossings.is_empty() {
             true => discriminant,
-            // Between two real zeros next to each other, and by rounding between any, D is negative: the roots cross there.
+            // Between two real zeros next to each other, and by rounding between any, D is
+            // negative: the roots cross there.
             false => Expr::function(Function::Maximum, vec![Expr::zero(), discriminant])?,
         };
         let square = square.sqrt()?;
@@ -321,12 +357,18 @@ impl Words {
             false => &s * &square,
         };
         let value = match (quadratic.lists[1][0].is_positive(), root.indeterminate) {
-            // Of the two forms the one in which nothing cancels at rest, if both have a value all the way.
-            (false, [false, _]) | (true, [false, true]) => Expr::divide(&(&upper - &q), &(&two * &r))?,
-            (true, [_, false]) | (false, [true, false]) => Expr::divide(&-&(&two * &p), &(&q + &upper))?,
+            // Of the two forms the one in which nothing cancels at rest, if both have a value all
+            // the way.
+            (false, [false, _]) | (true, [false, true]) => {
+                Expr::divide(&(&upper - &q), &(&two * &r))?
+            }
+            (true, [_, false]) | (false, [true, false]) => {
+                Expr::divide(&-&(&two * &p), &(&q + &upper))?
+            }
             (_, [true, true]) => {
                 let above = &(&upper * &(&r - &p)) - &(&q * &(&p + &r));
-                let [over_r, over_sum] = [&two * &r, &q + &upper].map(|divisor| &divisor * &divisor);
+                let [over_r, over_sum] =
+                    [&two * &r, &q + &upper].map(|divisor| &divisor * &divisor);
                 Expr::divide(&(&two * &above), &(&over_r + &over_sum))?
             }
         };
@@ -337,11 +379,18 @@ impl Words {
         Ok((value, polynomials.chain(sign).map(definition).collect()))
     }
 
-    /// P, Q and R as polynomials in the symbols; in units of the root of D at rest where they are too long for doubles.
+    /// P, Q and R as polynomials in the symbols; in units of the root of D at rest where they are
+    /// too long for doubles.
     fn polynomials(&self, quadratic: &Quadratic) -> [Polynomial; 3] {
         /// Binary digits.
         const LONG: u64 = 400;
-        let longest = quadratic.lists.iter().flatten().map(Integer::bits).max().unwrap_or(0);
+        let longest = quadratic
+            .lists
+            .iter()
+            .flatten()
+            .map(Integer::bits)
+            .max()
+            .unwrap_or(0);
         let unit = match longest > LONG {
             true => quadratic.slope_at_zero(),
             false => Integer::one(),
@@ -349,7 +398,10 @@ impl Words {
         quadratic.lists.each_ref().map(|list| {
             let mut sum = Polynomial::zero();
             for (power, number) in (0..).zip(list) {
-                sum.add_term(self.variable.power(power), Rational::new(number.clone(), unit.clone()));
+                sum.add_term(
+                    self.variable.power(power),
+                    Rational::new(number.clone(), unit.clone()),
+                );
             }
             sum
         })
@@ -369,7 +421,11 @@ impl Words {
         }
         // Where D is kept from being negative it says nothing itself.
         let crosses = !root.crossings.is_empty();
-        for (place, _, _) in root.ends.iter().filter(|(_, _, says_so)| crosses || !says_so) {
+        for (place, _, _) in root
+            .ends
+            .iter()
+            .filter(|(_, _, says_so)| crosses || !says_so)
+        {
             sign = &sign * &before(&short(place))?.sqrt()?;
         }
         Ok(sign)
@@ -379,7 +435,11 @@ impl Words {
     fn note(&self, root: &Followed) -> Option<Note> {
         let mut crossings: Vec<f64> = root.crossings.iter().map(to_f64).collect();
         crossings.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
-        let ends: Vec<(f64, RootEnd)> = root.ends.iter().map(|(place, end, _)| (to_f64(place), *end)).collect();
+        let ends: Vec<(f64, RootEnd)> = root
+            .ends
+            .iter()
+            .map(|(place, end, _)| (to_f64(place), *end))
+            .collect();
         let says = !crossings.is_empty() || !ends.is_empty();
         says.then(|| {
             Note::Followed(FollowedRoot {
@@ -391,8 +451,13 @@ impl Words {
         })
     }
 
-    /// The equations for the coefficients, with the numbers of this series in them, and their solution.
-    fn linear_system(&self, series: &[Rational], quadratic: &Quadratic) -> Result<Vec<Line>, ExprError> {
+    /// The equations for the coefficients, with the numbers of this series in them, and their
+    /// solution.
+    fn linear_system(
+        &self,
+        series: &[Rational],
+        quadratic: &Quadratic,
+    ) -> Result<Vec<Line>, ExprError> {
         let [s, f] = self.short;
         let power = |k: usize| Expr::from(s).integer_power(k as i64);
         let in_powers = |numbers: &[Rational]| -> Result<Expr, ExprError> {
@@ -429,7 +494,9 @@ impl Words {
                 }
             }
             let words = match n {
-                0 => format!("in {upper} + {middle}*{f} + {lower}*{f}^2 each power of {s} vanishes"),
+                0 => {
+                    format!("in {upper} + {middle}*{f} + {lower}*{f}^2 each power of {s} vanishes")
+                }
                 _ => String::new(),
             };
             lines.push(Line::equation(Expr::sum(terms), Expr::zero()).because(words));
@@ -450,7 +517,8 @@ impl Words {
 
 /// A short fraction so near to a place that no value is on the wrong side of it but by rounding.
 fn short(place: &Rational) -> Rational {
-    let tolerance = place.abs() * Rational::new(Integer::one(), Integer::from(10_000_000_000_000_i64));
+    let tolerance =
+        place.abs() * Rational::new(Integer::one(), Integer::from(10_000_000_000_000_i64));
     convergent(place, &tolerance)
 }
 
@@ -468,8 +536,8 @@ mod tests {
         crate::method::solve(&Oscillator::parse(equation).unwrap(), &options)
     }
 
-    /// The frequencies of Toda's and Morse's forces have no term in A: their default is of higher degree, and that of the series of order 12
-    /// near rest.
+    /// The frequencies of Toda's and Morse's forces have no term in A: their default is of higher
+    /// degree, and that of the series of order 12 near rest.
     #[test]
     fn without_degrees_there_is_an_answer() {
         for equation in ["x'' + 1 - exp(-x) = 0", "x'' + exp(-x) - exp(-2*x) = 0"] {
@@ -480,13 +548,22 @@ mod tests {
                     order,
                     ..Options::default()
                 };
-                crate::method::solve(&oscillator, &options).unwrap_or_else(|refusal| panic!("{equation}: {refusal}"))
+                crate::method::solve(&oscillator, &options)
+                    .unwrap_or_else(|refusal| panic!("{equation}: {refusal}"))
             };
             let (found, series) = (by(METHOD, None), by(Method::LindstedtPoincare, Some(12)));
-            assert_eq!(found.degrees, Some(Degrees::Quadratic(2, 2, 2)), "{equation}");
+            assert_eq!(
+                found.degrees,
+                Some(Degrees::Quadratic(2, 2, 2)),
+                "{equation}"
+            );
             for amplitude in [-0.2, 0.1, 0.2] {
-                let [found, series] = [&found, &series].map(|solution| at(solution, &[("A", amplitude)]).unwrap());
-                assert!((found / series - 1.0).abs() < 1e-7, "{equation}: {found} {series}");
+                let [found, series] =
+                    [&found, &series].map(|solution| at(solution, &[("A", amplitude)]).unwrap());
+                assert!(
+                    (found / series - 1.0).abs() < 1e-7,
+                    "{equation}: {found} {series}"
+                );
             }
         }
         assert!(derived("x'' + 1 - exp(-x) = 0", [1, 1, 1]).is_err());
@@ -503,9 +580,12 @@ mod tests {
         Quadratic::of(series, degrees).unwrap_or_else(|reason| panic!("{reason}"))
     }
 
-    /// The series of the root of `P + Q f + R f^2` that is one at zero, by Newton's method on its coefficients.
+    /// The series of the root of `P + Q f + R f^2` that is one at zero, by Newton's method on its
+    /// coefficients.
     fn root_series(lists: [&[i64]; 3], length: usize) -> Vec<Rational> {
-        let at = |list: usize, k: usize| Rational::from_integer(lists[list].get(k).copied().unwrap_or(0).into());
+        let at = |list: usize, k: usize| {
+            Rational::from_integer(lists[list].get(k).copied().unwrap_or(0).into())
+        };
         let slope = at(1, 0) + at(2, 0) + at(2, 0);
         let mut f = vec![Rational::one()];
         for n in 1..length {
@@ -525,17 +605,26 @@ mod tests {
     fn an_algebraic_function_is_its_own_approximant() {
         let lists: [&[i64]; 3] = [&[-3, 2, 5], &[2, 0, -7], &[1, 4, 1]];
         let found = of(&root_series(lists, 8), [2, 2, 2]);
-        let expected = lists.map(|list| list.iter().map(|number| Integer::from(*number)).collect::<Vec<_>>());
+        let expected = lists.map(|list| {
+            list.iter()
+                .map(|number| Integer::from(*number))
+                .collect::<Vec<_>>()
+        });
         assert_eq!(found.lists, expected);
     }
 
-    /// Two roots that cross: `(f - 1 - s)(f - 3 + s) = 0` at s = 1, exactly; where they nearly do, at the middle of the gap.
+    /// Two roots that cross: `(f - 1 - s)(f - 3 + s) = 0` at s = 1, exactly; where they nearly do,
+    /// at the middle of the gap.
     #[test]
     fn roots_that_cross_go_straight_on() {
         for gap in [0, 1, -1] {
             // (f - 1 - s)(f - 3 + s) + gap s/10^8: all but crossing.
             let scale = 100_000_000;
-            let lists: [Vec<i64>; 3] = [vec![-3 * scale, -2 * scale + gap, scale], vec![4 * scale], vec![-scale]];
+            let lists: [Vec<i64>; 3] = [
+                vec![-3 * scale, -2 * scale + gap, scale],
+                vec![4 * scale],
+                vec![-scale],
+            ];
             let quadratic = Quadratic {
                 lists: lists.map(|list| list.into_iter().map(Integer::from).collect()),
             };
@@ -553,12 +642,17 @@ mod tests {
                 value.evaluate(&letters.collect()).expect("a root")
             };
             for s in [-3.0, 0.0, 0.5, 1.5, 2.5, 10.0] {
-                assert!((value(s) - 1.0 - s).abs() < 1e-6, "{gap}: {} at {s}", value(s));
+                assert!(
+                    (value(s) - 1.0 - s).abs() < 1e-6,
+                    "{gap}: {} at {s}",
+                    value(s)
+                );
             }
         }
     }
 
-    /// `f^2 = 1 - s` ends at one, `f (1 - s) = 1` is infinite there, and both say so; `f^2 = (1 - s)(2 - s)/2` does not come back.
+    /// `f^2 = 1 - s` ends at one, `f (1 - s) = 1` is infinite there, and both say so;
+    /// `f^2 = (1 - s)(2 - s)/2` does not come back.
     #[test]
     fn a_root_that_ends_has_no_value_beyond() {
         let followed = |lists: [&[i64]; 3]| {
@@ -584,7 +678,9 @@ mod tests {
         };
         let (ends, value) = followed([&[-1, 1], &[0], &[1]]);
         assert_eq!(ends, [(1.0, RootEnd::Meets)]);
-        assert!(value(0.75).is_some_and(|found| (found - 0.5).abs() < 1e-15) && value(1.5).is_none());
+        assert!(
+            value(0.75).is_some_and(|found| (found - 0.5).abs() < 1e-15) && value(1.5).is_none()
+        );
         let (ends, value) = followed([&[-2, 3, -1], &[0], &[2]]);
         assert_eq!(ends, [(1.0, RootEnd::Meets)]);
         assert!(value(0.5).is_some() && value(1.5).is_none() && value(3.0).is_none());
@@ -599,7 +695,11 @@ mod tests {
     fn degrees_without_an_approximant_say_why() {
         for (equation, degrees, reason) in [
             ("x'' + 4*x = 0", [1, 1, 1], "does not depend"),
-            ("x'' + x + b*x^3 + c*x^5 = 0", [1, 1, 1], "several combinations"),
+            (
+                "x'' + x + b*x^3 + c*x^5 = 0",
+                [1, 1, 1],
+                "several combinations",
+            ),
             ("x'' + sin(x) = 0", [41, 1, 1], "[40/40/40]"),
         ] {
             let refusal = derived(equation, degrees).unwrap_err().to_string();
@@ -611,11 +711,14 @@ mod tests {
             ..Options::default()
         };
         let pendulum = Oscillator::parse("x'' + sin(x) = 0").unwrap();
-        let refusal = crate::method::solve(&pendulum, &quotient).unwrap_err().to_string();
+        let refusal = crate::method::solve(&pendulum, &quotient)
+            .unwrap_err()
+            .to_string();
         assert!(refusal.contains("it has three"), "{refusal}");
     }
 
-    /// omega of Duffing's equation at eps A^2 = s is sqrt(1 + s) agm(1, sqrt(1 - s/(2 (1 + s)))), for a softening spring as well.
+    /// omega of Duffing's equation at eps A^2 = s is sqrt(1 + s) agm(1, sqrt(1 - s/(2 (1 + s)))),
+    /// for a softening spring as well.
     #[test]
     fn the_elliptic_frequency_is_met() {
         let solution = derived("x'' + x + eps*x^3 = 0", [8, 8, 8]).unwrap();
@@ -625,8 +728,13 @@ mod tests {
                 (a, g) = ((a + g) / 2.0, f64::sqrt(a * g));
             }
             let omega = f64::sqrt(1.0 + size) * a;
-            let found = at(&solution, &[("A", 1.0), ("eps", size)]).expect("a value").sqrt();
-            assert!((found / omega - 1.0).abs() < error, "{size}: {found} {omega}");
+            let found = at(&solution, &[("A", 1.0), ("eps", size)])
+                .expect("a value")
+                .sqrt();
+            assert!(
+                (found / omega - 1.0).abs() < error,
+                "{size}: {found} {omega}"
+            );
         }
     }
 }

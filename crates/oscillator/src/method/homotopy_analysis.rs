@@ -1,7 +1,9 @@
-//! Homotopy analysis: a homotopy with a convergence-control parameter, in which the frequency is expanded as well.
+//! Homotopy analysis: a homotopy with a convergence-control parameter, in which the frequency is
+//! expanded as well.
 //!
-//! Reference: S. Liao, *Beyond Perturbation: Introduction to the Homotopy Analysis Method*, Chapman & Hall/CRC 2003, chapter
-//! 7 (free oscillations); S. Liao, Int. J. Non-Linear Mech. 34 (1999) 759-778.
+//! Reference: S. Liao, *Beyond Perturbation: Introduction to the Homotopy Analysis Method*, Chapman
+//! & Hall/CRC 2003, chapter 7 (free oscillations); S. Liao, Int. J. Non-Linear Mech. 34 (1999)
+//! 759-778.
 //!
 //! ```text
 //! N[u, w] = w^2 u'' + f(u),   L[u] = w_0^2 (u'' + u),   derivatives in theta,   u_0 = A cos theta
@@ -10,7 +12,8 @@
 //! omega = w_0 + w_1 + ...,   E(hbar) = (1/(2 pi)) int_0^(2 pi) N[u, omega]^2 dtheta smallest
 //! ```
 //!
-//! With hbar = -1 this is the homotopy in which omega itself, not omega0^2, is expanded. Order 1 is `w_0` alone.
+//! With hbar = -1 this is the homotopy in which omega itself, not omega0^2, is expanded. Order 1 is
+//! `w_0` alone.
 //!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
@@ -48,11 +51,13 @@ const HIGHEST: u32 = 20;
 /// The most terms of one coefficient before the derivation is given up.
 const MOST_TERMS: usize = 20_000;
 
-/// Above this power of the force, coefficients have hundreds of digits and are counted: so many products of them are the most.
+/// Above this power of the force, coefficients have hundreds of digits and are counted: so many
+/// products of them are the most.
 const HIGH_POWER: u32 = 30;
 const MOST_PRODUCTS: usize = 1_000_000;
 
-/// The name of the convergence-control parameter, with underscores behind it where the equation uses the name.
+/// The name of the convergence-control parameter, with underscores behind it where the equation
+/// uses the name.
 pub const HBAR: &str = "hbar";
 
 /// The convergence-control parameter in an answer.
@@ -75,7 +80,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         Some(degree) if options.taylor.is_none() => degree,
         _ => options.taylor.unwrap_or(2 * order + 1),
     };
-    let force = oscillator.expand_with_any_stiffness(SmallParameter::Amplitude, degree.saturating_sub(1))?;
+    let force = oscillator
+        .expand_with_any_stiffness(SmallParameter::Amplitude, degree.saturating_sub(1))?;
     let mut solution = unsolved(oscillator, options, METHOD, order);
     solution.definitions.clone_from(&force.definitions);
     let symbol = convergence_control(&solution);
@@ -94,7 +100,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     solution.law = Law::Frequency(sum(&series.frequency).constant_term());
     solution.displacement = sum(&series.displacement);
     let embedding = fresh("q", &solution.names());
-    solution.validity.push(Note::Cut(Cut::Corrections { order, embedding }));
+    solution
+        .validity
+        .push(Note::Cut(Cut::Corrections { order, embedding }));
     if polynomial.is_none() {
         solution.validity.push(Note::TaylorPolynomial { degree });
     }
@@ -109,7 +117,12 @@ struct Series {
     displacement: Vec<FourierSeries<Polynomials>>,
 }
 
-fn expand(force: &PerturbedForce, order: usize, hbar: Polynomial, solution: &mut Solution) -> Result<Series, Refusal> {
+fn expand(
+    force: &PerturbedForce,
+    order: usize,
+    hbar: Polynomial,
+    solution: &mut Solution,
+) -> Result<Series, Refusal> {
     let mut expansion = Expansion::new(force, order, hbar, solution);
     for m in 1..=order {
         let residual = expansion.residual(m)?;
@@ -158,13 +171,22 @@ fn numbered(letter: &str, number: usize) -> Symbol {
 }
 
 impl<'a> Expansion<'a> {
-    fn new(force: &'a PerturbedForce, order: usize, hbar: Polynomial, solution: &'a mut Solution) -> Self {
+    fn new(
+        force: &'a PerturbedForce,
+        order: usize,
+        hbar: Polynomial,
+        solution: &'a mut Solution,
+    ) -> Self {
         let start = cosine(Polynomial::symbol(Symbol::new("A")));
         let mut products = Convolutions::new(POLYNOMIALS);
         let motion = products.leaf();
         let terms = force.terms.iter();
-        let powers: Vec<convolution::Node> = terms.map(|term| products.power(motion, term.position)).collect();
-        powers.iter().for_each(|&power| products.require(power, order - 1));
+        let powers: Vec<convolution::Node> = terms
+            .map(|term| products.power(motion, term.position))
+            .collect();
+        powers
+            .iter()
+            .for_each(|&power| products.require(power, order - 1));
         let names = solution.names();
         let letters = ["u", "w", "R"].map(|letter| fresh_stem(letter, &names));
         Self {
@@ -191,32 +213,55 @@ impl<'a> Expansion<'a> {
     /// `R_m` without the frequency that it fixes.
     fn residual(&mut self, m: usize) -> Result<FourierSeries<Polynomials>, Refusal> {
         let force = self.force;
-        let highest_power = force.terms.iter().map(|term| term.position).max().unwrap_or(1);
+        let highest_power = force
+            .terms
+            .iter()
+            .map(|term| term.position)
+            .max()
+            .unwrap_or(1);
         let displacement = &self.series.displacement;
         within_reach(&self.products, displacement, m - 1, highest_power)?;
         self.products.push(self.motion, displacement[m - 1].clone());
         self.products.advance(m - 1);
-        self.accelerations.push(displacement[m - 1].derivative().derivative());
+        self.accelerations
+            .push(displacement[m - 1].derivative().derivative());
         let linear = constant_series(self.linear.clone());
         let mut terms = vec![(1, &linear, &displacement[m - 1])];
-        let coefficients = force.terms.iter().map(|term| constant_series(term.coefficient.clone()));
+        let coefficients = force
+            .terms
+            .iter()
+            .map(|term| constant_series(term.coefficient.clone()));
         let coefficients: Vec<_> = coefficients.collect();
-        let known = self.powers.iter().map(|&power| self.products.order(power, m - 1));
+        let known = self
+            .powers
+            .iter()
+            .map(|&power| self.products.order(power, m - 1));
         let powers = coefficients.iter().zip(known);
         terms.extend(powers.filter_map(|(c, power)| Some((1, c, power?))));
         let residual = sum_of_products(&POLYNOMIALS, &terms);
         Ok(match m {
             1 => residual,
-            _ => residual.sum(&self.squares.inertia_without_last(&self.accelerations, m - 1)),
+            _ => residual.sum(
+                &self
+                    .squares
+                    .inertia_without_last(&self.accelerations, m - 1),
+            ),
         })
     }
 
     /// `w_0^2 A = c_1`, and `R_1` with it.
-    fn first_frequency(&mut self, residual: FourierSeries<Polynomials>) -> Result<FourierSeries<Polynomials>, Refusal> {
+    fn first_frequency(
+        &mut self,
+        residual: FourierSeries<Polynomials>,
+    ) -> Result<FourierSeries<Polynomials>, Refusal> {
         let by_amplitude = Monomial::power_of(Symbol::new("A"), -1);
-        let squared = residual.cosine(1).constant_term().times_monomial(&by_amplitude);
+        let squared = residual
+            .cosine(1)
+            .constant_term()
+            .times_monomial(&by_amplitude);
         let first = linear_frequency(&squared, self.solution);
-        // From here on omega0^2 = w_0^2 - (the rest of w_0^2), so that what cancels does so term by term.
+        // From here on omega0^2 = w_0^2 - (the rest of w_0^2), so that what cancels does so term by
+        // term.
         self.linear = squared.clone();
         self.linear.negate();
         self.linear.accumulate(&self.force.linear);
@@ -225,7 +270,12 @@ impl<'a> Expansion<'a> {
             || FourierSeries::zero(POLYNOMIALS),
             |(unit, integer)| constant_series(unit).divided_by(integer.to_i64().unwrap_or(1)),
         );
-        let defined = |name: &Symbol| self.solution.definitions.iter().any(|entry| entry.symbol == *name);
+        let defined = |name: &Symbol| {
+            self.solution
+                .definitions
+                .iter()
+                .any(|entry| entry.symbol == *name)
+        };
         let name = first.single_term().filter(|(_, number)| number.is_one());
         let name = name.and_then(|(monomial, _)| Some(monomial.factors().first()?.0));
         if let Some(name) = name.filter(defined) {
@@ -234,7 +284,10 @@ impl<'a> Expansion<'a> {
         let name = self.first_frequency_name;
         let start = self.series.displacement[0].times(-1);
         let inertia = |square: Polynomial| start.product(&constant_series(square));
-        let unknown = inertia(Polynomial::term(Monomial::power_of(name, 2), Rational::one()));
+        let unknown = inertia(Polynomial::term(
+            Monomial::power_of(name, 2),
+            Rational::one(),
+        ));
         self.lines.extend(secular_lines(
             numbered(&self.letters[2], 1),
             &residual.sum(&unknown),
@@ -247,8 +300,13 @@ impl<'a> Expansion<'a> {
     }
 
     /// `-2 w_0 w_(m-1) A + r = 0`, where `r` is the first harmonic of `R_m`.
-    fn correction(&mut self, m: usize, residual: FourierSeries<Polynomials>) -> FourierSeries<Polynomials> {
-        let by_amplitude = Polynomial::term(Monomial::power_of(Symbol::new("A"), -1), Rational::one());
+    fn correction(
+        &mut self,
+        m: usize,
+        residual: FourierSeries<Polynomials>,
+    ) -> FourierSeries<Polynomials> {
+        let by_amplitude =
+            Polynomial::term(Monomial::power_of(Symbol::new("A"), -1), Rational::one());
         let by_amplitude = constant_series(by_amplitude);
         let first_harmonic = residual.cosine(1).product(&self.inverse);
         let next = first_harmonic.product(&by_amplitude).divided_by(2);
@@ -273,36 +331,56 @@ impl<'a> Expansion<'a> {
     }
 
     /// `u_m''+ u_m = u_(m-1)'' + u_(m-1) + hbar R_m/w_0^2`, `u_m(0) = u_m'(0) = 0`.
-    fn next_displacement(&mut self, m: usize, residual: &FourierSeries<Polynomials>) -> Result<(), Refusal> {
+    fn next_displacement(
+        &mut self,
+        m: usize,
+        residual: &FourierSeries<Polynomials>,
+    ) -> Result<(), Refusal> {
         // What is left of the first harmonic has been removed by w_(m-1).
         let (particular, _) = residual.solve_oscillator();
         let scaled = particular
             .product(&self.hbar)
             .product(&self.inverse)
             .product(&self.inverse);
-        let mut next = scaled.difference(&scaled.at_zero().product(&FourierSeries::cos(POLYNOMIALS, 1)));
+        let mut next = scaled.difference(
+            &scaled
+                .at_zero()
+                .product(&FourierSeries::cos(POLYNOMIALS, 1)),
+        );
         if m > 1 {
             next = next.sum(&self.series.displacement[m - 1]);
         }
-        let longest = next.harmonics().iter().map(|entry| entry.1.terms().len()).max();
+        let longest = next
+            .harmonics()
+            .iter()
+            .map(|entry| entry.1.terms().len())
+            .max();
         if longest.is_some_and(|longest| longest > MOST_TERMS) {
             return Err(Refusal::TooLong { terms: MOST_TERMS });
         }
         let [u, _, r] = &self.letters;
         let (name, before, residual) = (numbered(u, m), numbered(u, m - 1), numbered(r, m));
-        let (control, first_frequency) = (convergence_control(self.solution), self.first_frequency_name);
+        let (control, first_frequency) = (
+            convergence_control(self.solution),
+            self.first_frequency_name,
+        );
         let driven = next.sum(&next.derivative().derivative());
         let left = Formula::Oscillator {
             of: name,
             square: Expr::one(),
         };
         let change = format!("{control}*{residual}/{first_frequency}^2");
-        self.lines.push(Line::equal([left, driven.into()]).because(match m {
-            1 => format!("{name}'' + {name} = {change}"),
-            _ => format!("{name}'' + {name} = {before}'' + {before} + {change}"),
-        }));
-        let start = |derivatives| Formula::AtZero { of: name, derivatives };
-        self.lines.push(Line::equal([start(0), start(1), Expr::zero().into()]));
+        self.lines
+            .push(Line::equal([left, driven.into()]).because(match m {
+                1 => format!("{name}'' + {name} = {change}"),
+                _ => format!("{name}'' + {name} = {before}'' + {before} + {change}"),
+            }));
+        let start = |derivatives| Formula::AtZero {
+            of: name,
+            derivatives,
+        };
+        self.lines
+            .push(Line::equal([start(0), start(1), Expr::zero().into()]));
         self.lines.push(Line::equation(name, next.clone()));
         self.series.displacement.push(next);
         Ok(())
@@ -310,7 +388,12 @@ impl<'a> Expansion<'a> {
 }
 
 /// `R_m` with the unknown frequency in it, and the condition that fixes that.
-fn secular_lines(name: Symbol, residual: &FourierSeries<Polynomials>, unknown: Expr, value: &Polynomial) -> Vec<Line> {
+fn secular_lines(
+    name: Symbol,
+    residual: &FourierSeries<Polynomials>,
+    unknown: Expr,
+    value: &Polynomial,
+) -> Vec<Line> {
     let secular = residual.cosine(1).constant_term();
     vec![
         Line::equation(name, residual.clone()),
@@ -321,8 +404,8 @@ fn secular_lines(name: Symbol, residual: &FourierSeries<Polynomials>, unknown: E
 
 /// An error where order `k` of the powers of `u` would take far more algebra than anyone waits for.
 ///
-/// Counted are the products of terms with which each power follows from the one before; of the powers that the force does not
-/// need the size is that of the others.
+/// Counted are the products of terms with which each power follows from the one before; of the
+/// powers that the force does not need the size is that of the others.
 fn within_reach(
     products: &Convolutions<Polynomials>,
     displacement: &[FourierSeries<Polynomials>],
@@ -332,8 +415,11 @@ fn within_reach(
     if highest <= HIGH_POWER {
         return Ok(());
     }
-    let size = |series: &FourierSeries<Polynomials>| series.numerators().map(|c| c.terms().len()).sum::<usize>();
-    let of_order = |i: usize| size(&displacement[i]) * products.orders(k - i).map(size).sum::<usize>();
+    let size = |series: &FourierSeries<Polynomials>| {
+        series.numerators().map(|c| c.terms().len()).sum::<usize>()
+    };
+    let of_order =
+        |i: usize| size(&displacement[i]) * products.orders(k - i).map(size).sum::<usize>();
     let count = (1..=k).map(of_order).sum::<usize>() * highest as usize / products.count();
     match count > MOST_PRODUCTS {
         true => Err(SecularError::TooManyHarmonics {
@@ -370,7 +456,8 @@ impl Squares {
         self.products.advance(k);
     }
 
-    /// The coefficient of `q^k` in `w^2 u''` without the term of the unknown `w_k`; `accelerations` are those of `u`.
+    /// The coefficient of `q^k` in `w^2 u''` without the term of the unknown `w_k`; `accelerations`
+    /// are those of `u`.
     fn inertia_without_last(
         &self,
         accelerations: &[FourierSeries<Polynomials>],
@@ -380,7 +467,13 @@ impl Squares {
         let known: Vec<_> = (1..k).filter_map(|i| Some((1, w(i)?, w(k - i)?))).collect();
         let last = sum_of_products(&POLYNOMIALS, &known);
         let mut terms = vec![(1, &last, &accelerations[0])];
-        terms.extend((0..k).filter_map(|n| Some((1, self.products.order(self.square, n)?, &accelerations[k - n]))));
+        terms.extend((0..k).filter_map(|n| {
+            Some((
+                1,
+                self.products.order(self.square, n)?,
+                &accelerations[k - n],
+            ))
+        }));
         sum_of_products(&POLYNOMIALS, &terms)
     }
 }

@@ -1,7 +1,8 @@
 //! Homotopy perturbation: the whole nonlinearity at the first power of a bookkeeping parameter.
 //!
-//! References: J.-H. He, *Homotopy perturbation technique*, Comput. Methods Appl. Mech. Eng. 178 (1999) 257-262; the paper's
-//! equation (12) is the first order of this method on its equation (11).
+//! References: J.-H. He, *Homotopy perturbation technique*, Comput. Methods Appl. Mech. Eng. 178
+//! (1999) 257-262; the paper's equation (12) is the first order of this method on its equation
+//! (11).
 //!
 //! ```text
 //! x'' + omega^2 x + p [(omega0^2 - omega^2) x + N(x)] = 0,    x = x_0 + p x_1 + ...,   x_0 = A cos(omega t)
@@ -9,10 +10,12 @@
 //! omega^2 (x_n'' + x_n) = - sum_(i=1..n) a_i x_(n-i) - N_(n-1),   no secular term fixes a_n
 //! ```
 //!
-//! At p = 1 the second line is an equation for omega^2, exact in its coefficients: explicit at order one, a square root at
-//! order two, implicit above. In units of omega^2 this is [`secular::expand`](super::secular::expand) with the corrections
-//! before `y` instead of `y''`. A force that is no polynomial enters as its Taylor polynomial of degree `2 n + 1`.
-//! Inertia that depends on the position stands in `N`, with `x' = omega x_theta`; the relation then is quadratic at order one.
+//! At p = 1 the second line is an equation for omega^2, exact in its coefficients: explicit at
+//! order one, a square root at order two, implicit above. In units of omega^2 this is
+//! [`secular::expand`](super::secular::expand) with the corrections before `y` instead of `y''`. A
+//! force that is no polynomial enters as its Taylor polynomial of degree `2 n + 1`. Inertia that
+//! depends on the position stands in `N`, with `x' = omega x_theta`; the relation then is quadratic
+//! at order one.
 //!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
@@ -41,20 +44,30 @@ use crate::solution::note::Cut;
 use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Note, Root, Solution};
 use crate::symbol::{Symbol, fresh};
 
-/// Derives the relation between frequency and amplitude, and the motion, to an order in the bookkeeping parameter.
+/// Derives the relation between frequency and amplitude, and the motion, to an order in the
+/// bookkeeping parameter.
 ///
 /// # Errors
-/// Damping, forcing, velocities other than those of inertia, or a force that cannot be expanded, each by name.
+/// Damping, forcing, velocities other than those of inertia, or a force that cannot be expanded,
+/// each by name.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     with_stiffness(oscillator, options, true)
 }
 
-/// As [`solve`], where the linear force may be missing: `0 = omega^2 + p a_1 + ...`. What parameter expansion allows.
-pub(super) fn solve_without_linear_part(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+/// As [`solve`], where the linear force may be missing: `0 = omega^2 + p a_1 + ...`. What parameter
+/// expansion allows.
+pub(super) fn solve_without_linear_part(
+    oscillator: &Oscillator,
+    options: &Options,
+) -> Result<Solution, Refusal> {
     with_stiffness(oscillator, options, false)
 }
 
-fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> Result<Solution, Refusal> {
+fn with_stiffness(
+    oscillator: &Oscillator,
+    options: &Options,
+    needed: bool,
+) -> Result<Solution, Refusal> {
     const METHOD: Method = Method::HomotopyPerturbation;
     let moving = VariableMass::of(oscillator)?.is_some();
     if !moving {
@@ -68,8 +81,10 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
         Some(degree) if options.taylor.is_none() => degree + if moving { 2 } else { 0 },
         _ => options.taylor.unwrap_or(2 * order + 1),
     };
-    let force = oscillator.expand_with_any_stiffness(SmallParameter::Amplitude, degree.saturating_sub(1))?;
-    // Through an unstable equilibrium, which is answered for where it is asked for, omega0^2 is negative: the recursion does not mind.
+    let force = oscillator
+        .expand_with_any_stiffness(SmallParameter::Amplitude, degree.saturating_sub(1))?;
+    // Through an unstable equilibrium, which is answered for where it is asked for, omega0^2 is
+    // negative: the recursion does not mind.
     let passed = oscillator.about.is_some() && !force.linear.is_zero();
     let force = match needed && !passed {
         true => oscillator.expand(SmallParameter::Amplitude, degree.saturating_sub(1))?,
@@ -94,9 +109,17 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
 
     let explicit = explicit_terms(&series.frequency_squared, &force.linear, omega);
     let relation = relation(&explicit, omega);
-    let root = match explicit.exponent_range(omega).is_none_or(|range| range == (0, 0)) {
+    let root = match explicit
+        .exponent_range(omega)
+        .is_none_or(|range| range == (0, 0))
+    {
         true => Some(Root::Polynomial(explicit)),
-        false => root_in_closed_form(&relation, omega)?.map(|value| Root::Closed(ClosedForm { squared: true, value })),
+        false => root_in_closed_form(&relation, omega)?.map(|value| {
+            Root::Closed(ClosedForm {
+                squared: true,
+                value,
+            })
+        }),
     };
     let small = match oscillator.small_parameter(options.small.as_deref()) {
         Ok(SmallParameter::Parameter(name)) => name,
@@ -139,7 +162,8 @@ fn with_stiffness(oscillator: &Oscillator, options: &Options, needed: bool) -> R
     })
 }
 
-/// The terms of the force under the embedding: everything beside the linear one stands at `p^1`, in units of `omega^2`.
+/// The terms of the force under the embedding: everything beside the linear one stands at `p^1`, in
+/// units of `omega^2`.
 fn embedded(terms: &[Term], amplitude: Symbol, omega: Symbol) -> Vec<Term> {
     let term = |term: &Term| {
         let (position, velocity) = (term.position as i32, term.velocity as i32);
@@ -154,27 +178,36 @@ fn embedded(terms: &[Term], amplitude: Symbol, omega: Symbol) -> Vec<Term> {
     terms.iter().map(term).collect()
 }
 
-/// `omega0^2 + omega^2 (W_1 + W_2 + ...)`, which is `omega^2`: `series`, in units of `omega^2`, is `1 + W_1 + W_2 + ...`, and
-/// `omega0^2 = omega^2 (1 - W_1 - ...)`.
+/// `omega0^2 + omega^2 (W_1 + W_2 + ...)`, which is `omega^2`: `series`, in units of `omega^2`, is
+/// `1 + W_1 + W_2 + ...`, and `omega0^2 = omega^2 (1 - W_1 - ...)`.
 fn explicit_terms(series: &Polynomial, linear: &Polynomial, omega: Symbol) -> Polynomial {
     let mut corrections = series.clone();
     corrections.accumulate(&Polynomial::constant(-Rational::one()));
-    let mut explicit = corrections.product(&Polynomial::term(Monomial::power_of(omega, 2), Rational::one()));
+    let mut explicit = corrections.product(&Polynomial::term(
+        Monomial::power_of(omega, 2),
+        Rational::one(),
+    ));
     explicit.accumulate(linear);
     explicit
 }
 
-/// `omega^2 - explicit = 0` in whole powers of `omega`: what stands below the line is multiplied out.
+/// `omega^2 - explicit = 0` in whole powers of `omega`: what stands below the line is multiplied
+/// out.
 fn relation(explicit: &Polynomial, omega: Symbol) -> Polynomial {
     let mut relation = explicit.clone();
     relation.negate();
-    relation.accumulate(&Polynomial::term(Monomial::power_of(omega, 2), Rational::one()));
-    let lowest = relation.exponent_range(omega).map_or(0, |range| range.0.min(0));
+    relation.accumulate(&Polynomial::term(
+        Monomial::power_of(omega, 2),
+        Rational::one(),
+    ));
+    let lowest = relation
+        .exponent_range(omega)
+        .map_or(0, |range| range.0.min(0));
     relation.times_monomial(&Monomial::power_of(omega, -lowest))
 }
 
-/// The root of a relation that is linear in `omega^2`, or the upper one where it is quadratic, as an expression; `None` where it
-/// is of higher degree.
+/// The root of a relation that is linear in `omega^2`, or the upper one where it is quadratic, as
+/// an expression; `None` where it is of higher degree.
 fn root_in_closed_form(relation: &Polynomial, omega: Symbol) -> Result<Option<Expr>, ExprError> {
     let coefficient = |power: i32| {
         let mut result = Polynomial::zero();

@@ -1,7 +1,9 @@
-//! Inertia that depends on the position: `x'' + g(x) x'^2 + h(x) = 0`, a bead on a turning wire or a mass on a rod.
+//! Inertia that depends on the position: `x'' + g(x) x'^2 + h(x) = 0`, a bead on a turning wire or
+//! a mass on a rod.
 //!
-//! Reference: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 2.1 and 4.1; P. M. Mathews,
-//! M. Lakshmanan, *On a unique nonlinear oscillator*, Quart. Appl. Math. 32 (1974) 215-218 (a case that is known exactly).
+//! Reference: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 2.1 and 4.1;
+//! P. M. Mathews, M. Lakshmanan, *On a unique nonlinear oscillator*, Quart. Appl. Math. 32 (1974)
+//! 215-218 (a case that is known exactly).
 //!
 //! ```text
 //! M = exp(2 int g dx),   U' = M h:     M x'^2/2 + U = U(A)              the energy
@@ -73,7 +75,8 @@ impl VariableMass {
         if parts.inertia.is_zero() || !parts.damping.is_zero() || !parts.forcing.is_zero() {
             return Ok(None);
         }
-        let growth = Expr::divide(&parts.inertia, &Expr::from(velocity).integer_power(2)?)?.expand()?;
+        let growth =
+            Expr::divide(&parts.inertia, &Expr::from(velocity).integer_power(2)?)?.expand()?;
         if growth.contains(velocity) {
             return Ok(None);
         }
@@ -87,23 +90,34 @@ impl VariableMass {
 
     /// Whether the motion has odd harmonics alone.
     fn is_odd(&self, oscillator: &Oscillator) -> Result<bool, ExprError> {
-        Ok(is_odd(&self.force, oscillator.coordinate)? && is_odd(&self.growth, oscillator.coordinate)?)
+        Ok(is_odd(&self.force, oscillator.coordinate)?
+            && is_odd(&self.growth, oscillator.coordinate)?)
     }
 
-    /// Whether the inertia has a value at the equilibrium, from where `M` is measured, and is not zero there.
+    /// Whether the inertia has a value at the equilibrium, from where `M` is measured, and is not
+    /// zero there.
     fn has_value_at_rest(&self, oscillator: &Oscillator) -> bool {
         let x = oscillator.coordinate;
         // Of a quotient such as sin(x)/x the first coefficient of its series.
         let at_rest = |function: &Expr| {
             let value = function.substitute(x, &Expr::zero()).ok();
-            value.or_else(|| taylor(function, &[(x, Rational::zero())], 0).ok()?.first().cloned())
+            value.or_else(|| {
+                taylor(function, &[(x, Rational::zero())], 0)
+                    .ok()?
+                    .first()
+                    .cloned()
+            })
         };
         match &self.mass {
             Some(mass) => at_rest(mass).is_some_and(|mass| !mass.is_zero()),
             None => {
                 // What grows less than 1/x leaves its integral one.
-                let leaves_integral = |product: Expr| at_rest(&product).is_some_and(|value| value.is_zero());
-                at_rest(&self.growth).is_some() || (&self.growth * &Expr::from(x)).expand().is_ok_and(leaves_integral)
+                let leaves_integral =
+                    |product: Expr| at_rest(&product).is_some_and(|value| value.is_zero());
+                at_rest(&self.growth).is_some()
+                    || (&self.growth * &Expr::from(x))
+                        .expand()
+                        .is_ok_and(leaves_integral)
             }
         }
     }
@@ -113,8 +127,8 @@ impl VariableMass {
         (self.mass.as_ref()? * &self.force).expand().ok()
     }
 
-    /// `M` at numbers: in closed form, or by quadrature of `g` from the equilibrium, in steps that are a part of the amplitude: what
-    /// asks for it integrates over it in turn.
+    /// `M` at numbers: in closed form, or by quadrature of `g` from the equilibrium, in steps that
+    /// are a part of the amplitude: what asks for it integrates over it in turn.
     fn mass_at(
         &self,
         oscillator: &Oscillator,
@@ -130,7 +144,8 @@ impl VariableMass {
         let growth = compiled(oscillator, &self.growth, numbers)?;
         let step = amplitude.abs() / STEPS;
         let integral = move |from: f64, to: f64| {
-            // A small exponent need not be known to as many digits: near the equilibrium, quotients of zeros have fewer.
+            // A small exponent need not be known to as many digits: near the equilibrium, quotients
+            // of zeros have fewer.
             let size = growth(0.5 * (from + to)) * (to - from);
             let tolerance = (1e-14 / size.abs()).clamp(1e-13, 1e-2);
             let integral = integrate_smooth(&growth, from, to, tolerance);
@@ -155,8 +170,8 @@ impl VariableMass {
     }
 }
 
-/// `M h`, whose integral is the potential energy, and `h`, of an equation whose inertia depends on the position; `None` for any other,
-/// and where `M` has no closed form.
+/// `M h`, whose integral is the potential energy, and `h`, of an equation whose inertia depends on
+/// the position; `None` for any other, and where `M` has no closed form.
 pub fn forces(oscillator: &Oscillator) -> Option<[Expr; 2]> {
     let moving = VariableMass::of(oscillator).ok()??;
     Some([moving.weighted_force()?, moving.force])
@@ -164,7 +179,9 @@ pub fn forces(oscillator: &Oscillator) -> Option<[Expr; 2]> {
 
 /// `exp(n int g dx)`, logarithms in the exponent written as powers.
 fn integrating_factor(n: i64, growth: &Expr, coordinate: Symbol) -> Option<Expr> {
-    let exponent = (Expr::from(n) * potential(growth, coordinate)?).expand().ok()?;
+    let exponent = (Expr::from(n) * potential(growth, coordinate)?)
+        .expand()
+        .ok()?;
     let factor = |term: &Expr| -> Result<Expr, ExprError> {
         let (number, factors) = term.factors();
         match factors {
@@ -219,11 +236,16 @@ pub(super) const HARMONIC_BALANCE: Approach = Approach {
     numbers: harmonic_balance_at,
 };
 
-/// The answer of a method that takes such an equation as it is; `None` where it does not, or the equation is another.
+/// The answer of a method that takes such an equation as it is; `None` where it does not, or the
+/// equation is another.
 ///
 /// # Errors
 /// As for the method on any other equation.
-pub(super) fn solve(entry: &Entry, oscillator: &Oscillator, options: &Options) -> Result<Option<Solution>, Refusal> {
+pub(super) fn solve(
+    entry: &Entry,
+    oscillator: &Oscillator,
+    options: &Options,
+) -> Result<Option<Solution>, Refusal> {
     let Some(approach) = entry.inertia else {
         return Ok(None);
     };
@@ -284,7 +306,11 @@ fn mass_lines(moving: &VariableMass, oscillator: &Oscillator) -> Result<Vec<Line
     ])
 }
 
-fn exact(moving: &VariableMass, oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+fn exact(
+    moving: &VariableMass,
+    oscillator: &Oscillator,
+    options: &Options,
+) -> Result<Solution, Refusal> {
     let mut solution = unsolved(oscillator, options, Method::Exact, 0);
     solution.displacement = FourierSeries::zero(POLYNOMIALS);
     let x = oscillator.coordinate;
@@ -310,19 +336,31 @@ fn exact(moving: &VariableMass, oscillator: &Oscillator, options: &Options) -> R
     };
     let mut lines = match moving.mass {
         Some(_) => vec![],
-        None => mass_lines(moving, oscillator)?.into_iter().take(1).collect(),
+        None => mass_lines(moving, oscillator)?
+            .into_iter()
+            .take(1)
+            .collect(),
     };
     lines.extend(energy.period(oscillator)?);
     solution.derivation = mass_lines(moving, oscillator)?;
-    solution
-        .derivation
-        .extend(lines.iter().skip(usize::from(moving.mass.is_none())).cloned());
+    solution.derivation.extend(
+        lines
+            .iter()
+            .skip(usize::from(moving.mass.is_none()))
+            .cloned(),
+    );
     solution.law = Law::Quadrature(lines);
-    solution.validity.push(Note::Exact(ExactBy::EnergyQuadrature));
+    solution
+        .validity
+        .push(Note::Exact(ExactBy::EnergyQuadrature));
     Ok(solution)
 }
 
-fn energy_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+fn energy_balance(
+    moving: &VariableMass,
+    oscillator: &Oscillator,
+    options: &Options,
+) -> Result<Solution, Refusal> {
     const METHOD: Method = Method::EnergyBalance;
     first_order_only(options, METHOD)?;
     require_odd(oscillator, &moving.force, METHOD)?;
@@ -336,25 +374,33 @@ fn energy_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Opti
     solution.derivation = mass_lines(moving, oscillator)?;
     let law = || {
         let (mass, weighted) = (moving.mass.as_ref()?, moving.weighted_force()?);
-        // A difference of other potentials loses its digits at small amplitudes: the work is integrated instead.
+        // A difference of other potentials loses its digits at small amplitudes: the work is
+        // integrated instead.
         weighted.to_polynomial(&mut |_| None).ok()??;
         let potential = potential(&weighted, x)?;
         let at = |function: &Expr, place: &Expr| {
             let value = function.substitute(x, place).ok()?;
             positive_amplitude(&value).unwrap_or(value).expand().ok()
         };
-        let rise = (at(&potential, &amplitude)? - at(&potential, &eighth)?).expand().ok()?;
+        let rise = (at(&potential, &amplitude)? - at(&potential, &eighth)?)
+            .expand()
+            .ok()?;
         let inertia = at(mass, &eighth)?;
         let law = Expr::divide(&rise, &(&quarter * &inertia)).ok()?;
-        let law = law.expand().ok().filter(|law| law.terms().len() < 2).unwrap_or(law);
+        let law = law
+            .expand()
+            .ok()
+            .filter(|law| law.terms().len() < 2)
+            .unwrap_or(law);
         Some((rise, inertia, law))
     };
     match law() {
         Some((rise, inertia, law)) => {
             let kinetic = &quarter * &squared * &inertia;
-            solution
-                .derivation
-                .push(Line::equation(kinetic, rise).because(format!("the energy of {AMPLITUDE}*cos(θ) at θ = pi/4")));
+            solution.derivation.push(
+                Line::equation(kinetic, rise)
+                    .because(format!("the energy of {AMPLITUDE}*cos(θ) at θ = pi/4")),
+            );
             solution.derivation.push(Line::equation(squared, &law));
             set_law(&mut solution, &law)?;
         }
@@ -368,7 +414,9 @@ fn energy_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Opti
             };
             let words = match &moving.mass {
                 Some(_) => format!("the energy of {AMPLITUDE}*cos(θ) at θ = pi/4"),
-                None => format!("the energy of {AMPLITUDE}*cos(θ) at θ = pi/4, {there} the value of {name} there"),
+                None => format!(
+                    "the energy of {AMPLITUDE}*cos(θ) at θ = pi/4, {there} the value of {name} there"
+                ),
             };
             let work = Formula::Integral {
                 factor: Expr::one(),
@@ -382,11 +430,17 @@ fn energy_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Opti
             solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
-    solution.validity.push(Note::Collocated(Instant::EighthOfPeriod));
+    solution
+        .validity
+        .push(Note::Collocated(Instant::EighthOfPeriod));
     Ok(solution)
 }
 
-fn hamiltonian(moving: &VariableMass, oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+fn hamiltonian(
+    moving: &VariableMass,
+    oscillator: &Oscillator,
+    options: &Options,
+) -> Result<Solution, Refusal> {
     const METHOD: Method = Method::Hamiltonian;
     first_order_only(options, METHOD)?;
     let mut solution = unsolved(oscillator, options, METHOD, 1);
@@ -423,8 +477,9 @@ fn hamiltonian(moving: &VariableMass, oscillator: &Oscillator, options: &Options
                 by: "A".into(),
             };
             solution.derivation.extend([
-                Line::equation(k, kinetic)
-                    .because(format!("mean kinetic energy of {AMPLITUDE}*cos(θ) over {FREQUENCY}^2")),
+                Line::equation(k, kinetic).because(format!(
+                    "mean kinetic energy of {AMPLITUDE}*cos(θ) over {FREQUENCY}^2"
+                )),
                 Line::equation(p, potential).because("mean potential energy"),
                 Line::equal([slope(k, squared.clone()), slope(p, Expr::one())])
                     .because(format!("stationary in {AMPLITUDE}")),
@@ -466,7 +521,9 @@ fn hamiltonian(moving: &VariableMass, oscillator: &Oscillator, options: &Options
             solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
-    solution.validity.push(Note::FirstStep(FirstStep::TermOfEquation));
+    solution
+        .validity
+        .push(Note::FirstStep(FirstStep::TermOfEquation));
     Ok(solution)
 }
 
@@ -488,13 +545,19 @@ fn typed_terms(oscillator: &Oscillator) -> Result<Option<Vec<TypedTerm>>, Refusa
         for (power, &name) in powers.iter_mut().zip(&own) {
             *power = u32::try_from(monomial.exponent(name)).ok()?;
         }
-        let rest = own.iter().fold(monomial.clone(), |rest, &name| rest.without(name));
+        let rest = own
+            .iter()
+            .fold(monomial.clone(), |rest, &name| rest.without(name));
         Some((powers, Polynomial::term(rest, number.clone())))
     };
     Ok(polynomial.terms().map(term).collect())
 }
 
-fn harmonic_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+fn harmonic_balance(
+    moving: &VariableMass,
+    oscillator: &Oscillator,
+    options: &Options,
+) -> Result<Solution, Refusal> {
     const METHOD: Method = Method::HarmonicBalance;
     /// The most harmonics of an equation with inertia terms.
     const HIGHEST: u32 = 40;
@@ -539,8 +602,8 @@ fn harmonic_balance(moving: &VariableMass, oscillator: &Oscillator, options: &Op
     Ok(solution)
 }
 
-/// The cosine parts of the equation as typed along a motion with unknown coefficients, one for each harmonic; `None` where it is
-/// no polynomial, or too long to be written out.
+/// The cosine parts of the equation as typed along a motion with unknown coefficients, one for each
+/// harmonic; `None` where it is no polynomial, or too long to be written out.
 fn balances(
     oscillator: &Oscillator,
     motion: &FourierSeries<Polynomials>,
@@ -581,7 +644,9 @@ fn one_balance(solution: &mut Solution, balance: &Polynomial) -> Result<(), Refu
         &Expr::divide(&inertia, &amplitude)?.expand()?,
     )?;
     let condition = Line::equation(balance, Expr::zero()).because("the cos(θ) part");
-    solution.derivation.extend([condition, Line::equation(squared, &law)]);
+    solution
+        .derivation
+        .extend([condition, Line::equation(squared, &law)]);
     set_law(solution, &law)
 }
 
@@ -598,14 +663,21 @@ fn system(balances: &[Polynomial], names: &[Symbol]) -> Result<System, Refusal> 
 }
 
 /// The balances as integrals, where they are not written out.
-fn projections(oscillator: &Oscillator, harmonics: &[usize], names: &[Symbol]) -> Result<Vec<Line>, Refusal> {
+fn projections(
+    oscillator: &Oscillator,
+    harmonics: &[usize],
+    names: &[Symbol],
+) -> Result<Vec<Line>, Refusal> {
     let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();
     let k = named("k", oscillator);
     let projection = Formula::Integral {
         factor: Expr::one(),
         from: Expr::zero(),
         to: Expr::pi(),
-        integrand: Box::new((&oscillator.residual * &(Expr::from(k) * Expr::from(oscillator.phase())).cos()?).into()),
+        integrand: Box::new(
+            (&oscillator.residual * &(Expr::from(k) * Expr::from(oscillator.phase())).cos()?)
+                .into(),
+        ),
         variable: oscillator.phase(),
     };
     let line = Line::equal([projection, Expr::zero().into()]);
@@ -617,8 +689,8 @@ fn projections(oscillator: &Oscillator, harmonics: &[usize], names: &[Symbol]) -
     Ok(lines)
 }
 
-/// omega^2 and the motion of an answer for such an equation at numbers, the equilibrium left out; `None` where the law is
-/// explicit, or there are none.
+/// omega^2 and the motion of an answer for such an equation at numbers, the equilibrium left out;
+/// `None` where the law is explicit, or there are none.
 pub(super) fn at_numbers(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -628,13 +700,25 @@ pub(super) fn at_numbers(
     let equilibrium = solution.equilibrium.clone();
     let moved = &Expr::from(oscillator.coordinate) + &equilibrium;
     let mut centred = oscillator.clone();
-    centred.force = oscillator.force.substitute(oscillator.coordinate, &moved).ok()?;
-    centred.residual = oscillator.residual.substitute(oscillator.coordinate, &moved).ok()?;
+    centred.force = oscillator
+        .force
+        .substitute(oscillator.coordinate, &moved)
+        .ok()?;
+    centred.residual = oscillator
+        .residual
+        .substitute(oscillator.coordinate, &moved)
+        .ok()?;
     let oscillator = &centred;
     let moving = VariableMass::of(oscillator).ok()??;
     let amplitude = *numbers.get(&solution.amplitude.symbol())?;
     let mass = moving.mass_at(oscillator, numbers, amplitude)?;
-    let force = Force::new(&moving.force, oscillator.coordinate, &Expr::zero(), numbers, amplitude)?;
+    let force = Force::new(
+        &moving.force,
+        oscillator.coordinate,
+        &Expr::zero(),
+        numbers,
+        amplitude,
+    )?;
     let approach = Entry::of(solution.method).inertia.as_ref()?;
     (approach.numbers)(&Question {
         moving: &moving,
@@ -673,7 +757,8 @@ impl Question<'_> {
 fn exact_at(question: &Question) -> Option<AtNumbers> {
     let (mass, weighted) = (question.mass, |x| question.weighted(x));
     let force = energy::Force::smooth(&weighted);
-    let (period, cosine) = weighted_motion(&force, &|x| mass(x).sqrt(), 0.0, question.amplitude).ok()?;
+    let (period, cosine) =
+        weighted_motion(&force, &|x| mass(x).sqrt(), 0.0, question.amplitude).ok()?;
     let frequency = std::f64::consts::TAU / period;
     let motion = FourierSeries::from_parts(Doubles, cosine, vec![]);
     Some((frequency * frequency, motion))
@@ -690,7 +775,11 @@ fn energy_balance_at(question: &Question) -> Option<AtNumbers> {
 
 fn hamiltonian_at(question: &Question) -> Option<AtNumbers> {
     let amplitude = question.amplitude;
-    let growth = compiled(question.oscillator, &question.moving.growth, question.numbers)?;
+    let growth = compiled(
+        question.oscillator,
+        &question.moving.growth,
+        question.numbers,
+    )?;
     let mean = |function: &dyn Fn(f64, f64) -> f64| {
         let value = |theta: f64| function(theta.cos(), theta.sin());
         integrate_smooth(value, 0.0, std::f64::consts::PI, 1e-12).map(|(value, _)| value)
@@ -706,10 +795,16 @@ fn hamiltonian_at(question: &Question) -> Option<AtNumbers> {
 fn harmonic_balance_at(question: &Question) -> Option<AtNumbers> {
     let odd = question.moving.is_odd(question.oscillator).ok()?;
     let harmonics = harmonics(question.order, odd);
-    balanced(question.oscillator, question.numbers, &harmonics, question.amplitude)
+    balanced(
+        question.oscillator,
+        question.numbers,
+        &harmonics,
+        question.amplitude,
+    )
 }
 
-/// The balance of the equation as typed by Newton's iteration, the amplitude raised in steps from a nearly linear one.
+/// The balance of the equation as typed by Newton's iteration, the amplitude raised in steps from a
+/// nearly linear one.
 fn balanced(
     oscillator: &Oscillator,
     numbers: &BTreeMap<Symbol, f64>,
@@ -748,7 +843,10 @@ fn balanced(
     for (index, &k) in harmonics.iter().enumerate() {
         cosine[k] = unknowns[index + 1];
     }
-    Some((unknowns[0], FourierSeries::from_parts(Doubles, cosine, vec![])))
+    Some((
+        unknowns[0],
+        FourierSeries::from_parts(Doubles, cosine, vec![]),
+    ))
 }
 
 /// The equation as typed and its slopes in `x`, `x'` and `x''`, sampled along a motion.
@@ -761,7 +859,11 @@ struct Balance {
 }
 
 impl Balance {
-    fn new(oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>, harmonics: &[usize]) -> Option<Self> {
+    fn new(
+        oscillator: &Oscillator,
+        numbers: &BTreeMap<Symbol, f64>,
+        harmonics: &[usize],
+    ) -> Option<Self> {
         const FEWEST: usize = 128;
         let own = [
             oscillator.coordinate,
@@ -769,7 +871,9 @@ impl Balance {
             oscillator.velocity().derivative(),
         ];
         let names: Vec<Symbol> = own.into_iter().chain(numbers.keys().copied()).collect();
-        let slopes = own.iter().map(|&name| oscillator.residual.differentiate(name).ok());
+        let slopes = own
+            .iter()
+            .map(|&name| oscillator.residual.differentiate(name).ok());
         let expressions: Vec<Expr> = std::iter::once(Some(oscillator.residual.clone()))
             .chain(slopes)
             .collect::<Option<_>>()?;
@@ -778,7 +882,10 @@ impl Balance {
             .map(|expression| CompiledFunction::new(expression, &names).ok());
         Some(Self {
             functions: functions.collect::<Option<_>>()?,
-            arguments: [0.0; 3].into_iter().chain(numbers.values().copied()).collect(),
+            arguments: [0.0; 3]
+                .into_iter()
+                .chain(numbers.values().copied())
+                .collect(),
             harmonics: harmonics.to_vec(),
             points: FEWEST.max(16 * (harmonics.last()? + 1)),
         })
@@ -829,8 +936,9 @@ impl Balance {
                     residual[row] += values[0] * wave.1;
                     jacobian[(row, 0)] += by_frequency * wave.1;
                     for (column, (k, cosine, sine)) in waves.iter().enumerate() {
-                        let change =
-                            values[1] * cosine - values[2] * omega * k * sine - values[3] * squared * k * k * cosine;
+                        let change = values[1] * cosine
+                            - values[2] * omega * k * sine
+                            - values[3] * squared * k * k * cosine;
                         jacobian[(row, column + 1)] += change * wave.1;
                     }
                 }
@@ -846,7 +954,9 @@ impl Balance {
                 return Progress::Lost;
             }
             let scale = unknowns.rows(1, count).amax();
-            match change[0].abs() <= 1e-12 * unknowns[0] && change.rows(1, count).amax() <= 1e-12 * scale {
+            match change[0].abs() <= 1e-12 * unknowns[0]
+                && change.rows(1, count).amax() <= 1e-12 * scale
+            {
                 true => Progress::Settled,
                 false => Progress::Going,
             }

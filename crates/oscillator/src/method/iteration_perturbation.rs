@@ -1,8 +1,8 @@
 //! Iteration perturbation: the nonlinear factor frozen at the previous iterate.
 //!
-//! Reference: J.-H. He, *Iteration perturbation method for strongly nonlinear oscillations*, J. Vib. Control 7 (2001)
-//! 631-642; the second and later passes are the direct iteration of R. E. Mickens, *Truly Nonlinear Oscillations*, World
-//! Scientific 2010, chapter 4.
+//! Reference: J.-H. He, *Iteration perturbation method for strongly nonlinear oscillations*, J.
+//! Vib. Control 7 (2001) 631-642; the second and later passes are the direct iteration of R. E.
+//! Mickens, *Truly Nonlinear Oscillations*, World Scientific 2010, chapter 4.
 //!
 //! ```text
 //! x_n'' + g(x_(n-1)) x_n = 0,   g(x) = f(x)/x,   x_0 = A cos(omega t)                (a Hill equation, as Mathieu's)
@@ -23,7 +23,8 @@
 use num_traits::{One, Zero};
 
 use super::one_term::{
-    conservative_force, cosine, first_projection, law_of, note_even_part_last, solve_by_integral, unsolved,
+    conservative_force, cosine, first_projection, law_of, note_even_part_last, solve_by_integral,
+    unsolved,
 };
 use super::{Options, Refusal, Unsuited, not_polynomial};
 use crate::conservative::projection::cosine_coefficient;
@@ -58,7 +59,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let force = conservative_force(oscillator, options, METHOD)?;
     let passes = options.order.unwrap_or(1);
     if passes > MOST_PASSES {
-        return Err(Unsuited::HighestOrder { highest: MOST_PASSES }.to(METHOD));
+        return Err(Unsuited::HighestOrder {
+            highest: MOST_PASSES,
+        }
+        .to(METHOD));
     }
     if passes > 1 {
         return iterated(oscillator, options, &force, passes);
@@ -82,15 +86,23 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     Ok(solution)
 }
 
-/// Puts the first iterate into an answer: its harmonics are exact for polynomials, the lowest of them otherwise.
-pub(super) fn first_iterate(solution: &mut Solution, oscillator: &Oscillator, force: &Expr) -> Result<(), Refusal> {
+/// Puts the first iterate into an answer: its harmonics are exact for polynomials, the lowest of
+/// them otherwise.
+pub(super) fn first_iterate(
+    solution: &mut Solution,
+    oscillator: &Oscillator,
+    force: &Expr,
+) -> Result<(), Refusal> {
     let amplitude = Expr::symbol("A");
-    let degree = oscillator.polynomial_degree()?.map(|degree| degree as usize);
+    let degree = oscillator
+        .polynomial_degree()?
+        .map(|degree| degree as usize);
     let highest = degree.unwrap_or(HIGHEST_HARMONIC);
     let stem = fresh_stem("c", &oscillator.names());
     let mut motion = solution.displacement.clone();
     for k in (0..=highest).filter(|&k| k != 1) {
-        let Some(coefficient) = cosine_coefficient(force, oscillator.coordinate, &amplitude, k) else {
+        let Some(coefficient) = cosine_coefficient(force, oscillator.coordinate, &amplitude, k)
+        else {
             return Ok(());
         };
         if coefficient.is_zero() {
@@ -121,14 +133,21 @@ pub(super) fn first_iterate(solution: &mut Solution, oscillator: &Oscillator, fo
         motion = motion.sum(&term.divided_by(divisor));
     }
     if degree.is_none() && motion != solution.displacement {
-        solution.validity.push(Note::MotionCutAfter { harmonic: highest });
+        solution
+            .validity
+            .push(Note::MotionCutAfter { harmonic: highest });
     }
     solution.displacement = motion;
     Ok(())
 }
 
 /// Several passes for a polynomial force: an implicit relation in even powers of omega.
-fn iterated(oscillator: &Oscillator, options: &Options, force: &Expr, passes: u32) -> Result<Solution, Refusal> {
+fn iterated(
+    oscillator: &Oscillator,
+    options: &Options,
+    force: &Expr,
+    passes: u32,
+) -> Result<Solution, Refusal> {
     let (omega, amplitude) = (Symbol::new("omega"), Symbol::new("A"));
     let coefficients = polynomial_coefficients(oscillator, force)?
         .ok_or_else(|| not_polynomial(force, oscillator.coordinate).to(METHOD))?;
@@ -146,14 +165,18 @@ fn iterated(oscillator: &Oscillator, options: &Options, force: &Expr, passes: u3
         let pass = Pass::new(oscillator, &coefficients, &motion)?;
         let (particular, resonance) = pass.right_side.solve_oscillator();
         secular = resonance.cosine.constant_term();
-        let particular = particular.map(POLYNOMIALS, |coefficient, _| coefficient.times_monomial(&inverse));
-        let rest =
-            FourierSeries::constant(POLYNOMIALS, Polynomial::symbol(amplitude)).difference(&particular.at_zero());
+        let particular = particular.map(POLYNOMIALS, |coefficient, _| {
+            coefficient.times_monomial(&inverse)
+        });
+        let rest = FourierSeries::constant(POLYNOMIALS, Polynomial::symbol(amplitude))
+            .difference(&particular.at_zero());
         motion = particular.sum(&rest.product(&FourierSeries::cos(POLYNOMIALS, 1)));
         lines.extend(pass.lines(oscillator, number, (number < passes).then_some(&motion))?);
     }
     let relation = secular.times_monomial(&Monomial::power_of(amplitude, -1));
-    let lowest = relation.exponent_range(omega).map_or(0, |range| range.0.min(0));
+    let lowest = relation
+        .exponent_range(omega)
+        .map_or(0, |range| range.0.min(0));
     solution.law = Law::Relation {
         relation: relation.times_monomial(&Monomial::power_of(omega, -lowest)),
         root: None,
@@ -181,11 +204,15 @@ impl Pass {
     ) -> Result<Self, Refusal> {
         // f(0) = 0, so f/x is a polynomial as well.
         let quotient = coefficients.get(1..).unwrap_or_default();
-        if coefficients.first().is_some_and(|constant| !constant.is_zero()) {
+        if coefficients
+            .first()
+            .is_some_and(|constant| !constant.is_zero())
+        {
             return Err(OscillatorError::NoEquilibrium(oscillator.force.to_string()).into());
         }
         let factor = horner(quotient, motion)?;
-        let squared = Polynomial::term(Monomial::power_of(Symbol::new("omega"), 2), Rational::one());
+        let squared =
+            Polynomial::term(Monomial::power_of(Symbol::new("omega"), 2), Rational::one());
         let squared = FourierSeries::constant(POLYNOMIALS, squared);
         Ok(Self {
             right_side: squared.difference(&factor).product(motion),
@@ -200,7 +227,10 @@ impl Pass {
         number: u32,
         next: Option<&FourierSeries<Polynomials>>,
     ) -> Result<Vec<Line>, Refusal> {
-        let (before, after) = (numbered(oscillator, number - 1), numbered(oscillator, number));
+        let (before, after) = (
+            numbered(oscillator, number - 1),
+            numbered(oscillator, number),
+        );
         let omega = Expr::symbol("omega").integer_power(2)?;
         let x = Expr::from(oscillator.coordinate);
         let factor = Expr::divide(&oscillator.force, &x)?.expand()?;
@@ -290,7 +320,11 @@ pub(super) fn horner(
         value = value
             .product(motion)
             .sum(&FourierSeries::constant(POLYNOMIALS, coefficient.clone()));
-        let longest = value.harmonics().iter().map(|entry| entry.1.terms().len()).max();
+        let longest = value
+            .harmonics()
+            .iter()
+            .map(|entry| entry.1.terms().len())
+            .max();
         if longest.is_some_and(|longest| longest > MOST_TERMS) {
             return Err(Refusal::TooLong { terms: MOST_TERMS });
         }

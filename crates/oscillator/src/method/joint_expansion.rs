@@ -1,16 +1,16 @@
-//! Self-excited equations without one parameter whose vanishing leaves `x'' + omega0^2 x`: everything else is taken small
-//! together.
+//! Self-excited equations without one parameter whose vanishing leaves `x'' + omega0^2 x`:
+//! everything else is taken small together.
 //!
-//! Reference: A. H. Nayfeh and D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, section 2.3 (one bookkeeping parameter for
-//! damping and nonlinearity).
+//! Reference: A. H. Nayfeh and D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, section 2.3 (one
+//! bookkeeping parameter for damping and nonlinearity).
 //!
 //! ```text
 //! x'' + x - mu (1 - x^2) x' + eps x^3 = 0     mu -> delta mu, eps -> delta eps; expanded in delta; delta = 1
 //! x'' + x - (1 - x^2) x'/10 = 0               x'' + x - delta (1 - x^2) x' = 0, expanded in delta; delta = 1/10
 //! ```
 //!
-//! Nothing is neglected by that: it says which terms count as equally small, and where parameters are small in other
-//! proportions the terms of the result are still right, each by itself.
+//! Nothing is neglected by that: it says which terms count as equally small, and where parameters
+//! are small in other proportions the terms of the result are still right, each by itself.
 
 use std::collections::BTreeMap;
 
@@ -27,13 +27,15 @@ pub(super) struct JointExpansion {
     pub force: PerturbedForce,
     /// The bookkeeping parameter, which is no parameter of the equation.
     pub delta: Symbol,
-    /// Its value where numbers stand before the terms; otherwise it is one, and `parameters` are small.
+    /// Its value where numbers stand before the terms; otherwise it is one, and `parameters` are
+    /// small.
     pub value: Option<Rational>,
     /// The parameters of the equation that are small.
     pub parameters: Vec<Symbol>,
 }
 
-/// Expands to `delta^order`; `None` where no linear restoring force is left or a term is no polynomial.
+/// Expands to `delta^order`; `None` where no linear restoring force is left or a term is no
+/// polynomial.
 pub(super) fn expand_jointly(
     oscillator: &Oscillator,
     parts: &Parts,
@@ -79,9 +81,17 @@ pub(super) fn expand_jointly(
             let factor = marked(&Expr::number(value.recip()));
             let small_term = |term: &Expr| {
                 let scaled = term.substitute_all(&scaled)?;
-                Ok(if scaled == *term { &factor * term } else { scaled })
+                Ok(if scaled == *term {
+                    &factor * term
+                } else {
+                    scaled
+                })
             };
-            let rest: Vec<Expr> = others.iter().map(small_term).collect::<Result<_, ExprError>>().ok()?;
+            let rest: Vec<Expr> = others
+                .iter()
+                .map(small_term)
+                .collect::<Result<_, ExprError>>()
+                .ok()?;
             (Expr::sum(linear.into_iter().chain(rest)), Some(value))
         }
     };
@@ -89,17 +99,27 @@ pub(super) fn expand_jointly(
     scaled.force = force;
     scaled.parameters.push(delta);
     Some(JointExpansion {
-        force: scaled.expand(SmallParameter::Parameter(delta), order).ok()?,
+        force: scaled
+            .expand(SmallParameter::Parameter(delta), order)
+            .ok()?,
         delta,
         value,
         parameters,
     })
 }
 
-/// Completes `parameters` to a set whose vanishing leaves the linear terms alone, where there is one: always the one next that
-/// takes most of what is left with it.
-fn small_parameters(linear: &[Expr], others: &[Expr], oscillator: &Oscillator, parameters: &mut Vec<Symbol>) -> bool {
-    let vanishes = |term: &Expr, name: Symbol| term.substitute(name, &Expr::zero()).is_ok_and(|rest| rest.is_zero());
+/// Completes `parameters` to a set whose vanishing leaves the linear terms alone, where there is
+/// one: always the one next that takes most of what is left with it.
+fn small_parameters(
+    linear: &[Expr],
+    others: &[Expr],
+    oscillator: &Oscillator,
+    parameters: &mut Vec<Symbol>,
+) -> bool {
+    let vanishes = |term: &Expr, name: Symbol| {
+        term.substitute(name, &Expr::zero())
+            .is_ok_and(|rest| rest.is_zero())
+    };
     let mut left: Vec<&Expr> = others
         .iter()
         .filter(|term| !parameters.iter().any(|&name| vanishes(term, name)))
@@ -109,7 +129,8 @@ fn small_parameters(linear: &[Expr], others: &[Expr], oscillator: &Oscillator, p
         let candidates = free.filter(|&name| !linear.iter().any(|term| term.contains(name)));
         let taken = |name: Symbol| left.iter().filter(|term| vanishes(term, name)).count();
         // Of equally good ones the first in the alphabet.
-        let Some(best) = candidates.max_by_key(|&name| (taken(name), std::cmp::Reverse(name))) else {
+        let Some(best) = candidates.max_by_key(|&name| (taken(name), std::cmp::Reverse(name)))
+        else {
             return false;
         };
         if taken(best) == 0 {

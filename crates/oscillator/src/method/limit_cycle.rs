@@ -2,20 +2,20 @@
 //!
 //! Reference: A. H. Nayfeh, *Perturbation Methods*, Wiley 1973, sections 3.1 and 5.1.
 //!
-//! To first order the amplitude drifts as the secular sine does. In units of the linear frequency, with `z = a^2` and the
-//! terms `C_j` of the method of Lindstedt and Poincare,
+//! To first order the amplitude drifts as the secular sine does. In units of the linear frequency,
+//! with `z = a^2` and the terms `C_j` of the method of Lindstedt and Poincare,
 //!
 //! ```text
 //! a' = delta a g(a^2)/2,      g(z) = sum_j c_j omega0^(q-2) [cos^p (-sin)^q]_sin z^((p+q-1)/2)
 //! ```
 //!
-//! A positive root of `g` is the square of the amplitude of a limit cycle; it attracts where `delta g' < 0`, and a root
-//! where `g'` vanishes too begins no expansion. At the orders above, the amplitude of each follows from a linear equation
-//! with the one slope `J = -2 z g'(z)`.
+//! A positive root of `g` is the square of the amplitude of a limit cycle; it attracts where
+//! `delta g' < 0`, and a root where `g'` vanishes too begins no expansion. At the orders above, the
+//! amplitude of each follows from a linear equation with the one slope `J = -2 z g'(z)`.
 //!
-//! An amplitude that is no fraction and no product of parameters enters as a symbol `a0`. Where `a0^2` is the root of a
-//! polynomial with rational coefficients, all coefficients stay exact: powers of `a0` are reduced, and `1/J` is found,
-//! modulo that polynomial.
+//! An amplitude that is no fraction and no product of parameters enters as a symbol `a0`. Where
+//! `a0^2` is the root of a polynomial with rational coefficients, all coefficients stay exact:
+//! powers of `a0` are reduced, and `1/J` is found, modulo that polynomial.
 
 use num_integer::Integer as _;
 use num_traits::{One, Signed, ToPrimitive, Zero};
@@ -49,7 +49,8 @@ pub(super) struct AmplitudeEquation {
 pub(super) struct Cycle {
     /// The amplitude.
     pub amplitude: Expr,
-    /// Where this is positive the cycle attracts, and repels where it is negative; `None` where the slope vanishes.
+    /// Where this is positive the cycle attracts, and repels where it is negative; `None` where the
+    /// slope vanishes.
     pub attracts_where: Option<Polynomial>,
     /// The amplitude as a single term: a number, a product of parameters, or `a0`.
     pub unit: Polynomial,
@@ -74,10 +75,14 @@ impl AmplitudeEquation {
     /// `None` where the first order has no secular sine at any amplitude: the amplitude is free.
     pub fn new(force: &PerturbedForce, units: &Units) -> Option<Self> {
         let equation = coefficients(force, units);
-        let lowest = equation.iter().position(|coefficient| !coefficient.is_zero())?;
+        let lowest = equation
+            .iter()
+            .position(|coefficient| !coefficient.is_zero())?;
         let factor = common_monomial(&equation);
         let inverse = factor.power(-1);
-        let rest = equation[lowest..].iter().map(|entry| entry.times_monomial(&inverse));
+        let rest = equation[lowest..]
+            .iter()
+            .map(|entry| entry.times_monomial(&inverse));
         Some(Self {
             factor,
             lowest: lowest as i32,
@@ -92,19 +97,27 @@ impl AmplitudeEquation {
 
     /// The equation in `z`, for messages.
     pub fn in_square(&self, z: Symbol) -> Polynomial {
-        let term =
-            |(k, coefficient): (usize, &Polynomial)| coefficient.times_monomial(&Monomial::power_of(z, k as i32));
+        let term = |(k, coefficient): (usize, &Polynomial)| {
+            coefficient.times_monomial(&Monomial::power_of(z, k as i32))
+        };
         let terms = self.rest.iter().enumerate().map(term);
         terms.fold(Polynomial::zero(), |sum, term| sum + term)
     }
 
     /// The secular sine of the first order, which vanishes at the amplitude `unknown` of the cycle.
-    pub fn condition(&self, cycle: &Cycle, unknown: Symbol, marker: Option<Symbol>) -> AmplitudeCondition {
+    pub fn condition(
+        &self,
+        cycle: &Cycle,
+        unknown: Symbol,
+        marker: Option<Symbol>,
+    ) -> AmplitudeCondition {
         let mark = marker.map_or_else(Monomial::one, |name| Monomial::power_of(name, 1));
         let mut sine = Polynomial::zero();
         for (k, coefficient) in self.rest.iter().enumerate() {
             let power = Monomial::power_of(unknown, 2 * (self.lowest + k as i32));
-            sine.accumulate(&coefficient.times_monomial(&power.product(&mark).product(&self.factor)));
+            sine.accumulate(
+                &coefficient.times_monomial(&power.product(&mark).product(&self.factor)),
+            );
         }
         sine.negate();
         AmplitudeCondition {
@@ -135,7 +148,9 @@ impl AmplitudeEquation {
                 .map(|root| self.numerical(root, &numbers, [name, fresh("z", taken)], &signs))
                 .collect());
         }
-        let powers: Vec<usize> = (1..self.rest.len()).filter(|&k| !self.rest[k].is_zero()).collect();
+        let powers: Vec<usize> = (1..self.rest.len())
+            .filter(|&k| !self.rest[k].is_zero())
+            .collect();
         match powers.as_slice() {
             [] => Ok(vec![]),
             [highest] => self.two_terms(*highest, name, &signs),
@@ -143,19 +158,30 @@ impl AmplitudeEquation {
         }
     }
 
-    /// The cycle at a root of an equation in numbers, with names for its amplitude and for the root.
-    fn numerical(&self, root: &RealRoot, equation: &[Rational], [name, z]: [Symbol; 2], signs: &Monomial) -> Cycle {
+    /// The cycle at a root of an equation in numbers, with names for its amplitude and for the
+    /// root.
+    fn numerical(
+        &self,
+        root: &RealRoot,
+        equation: &[Rational],
+        [name, z]: [Symbol; 2],
+        signs: &Monomial,
+    ) -> Cycle {
         let slope = derivative(equation);
-        let slope_value = slope
-            .iter()
-            .rev()
-            .fold(0.0, |sum, c| sum * root.value + crate::exact::rational::to_f64(c));
-        let sign = |positive: bool| Rational::from_integer(if positive { 1.into() } else { (-1).into() });
+        let slope_value = slope.iter().rev().fold(0.0, |sum, c| {
+            sum * root.value + crate::exact::rational::to_f64(c)
+        });
+        let sign =
+            |positive: bool| Rational::from_integer(if positive { 1.into() } else { (-1).into() });
         let attracts_where = root
             .simple
             .then(|| Polynomial::term(signs.clone(), sign(slope_value < 0.0)));
         let degree = root.factor.len() as i32 - 1;
-        if let Some(exact) = root.exact.as_ref().and_then(|exact| power(exact, &ratio(1, 2))) {
+        if let Some(exact) = root
+            .exact
+            .as_ref()
+            .and_then(|exact| power(exact, &ratio(1, 2)))
+        {
             return Cycle {
                 amplitude: Expr::number(exact.clone()),
                 attracts_where,
@@ -171,7 +197,9 @@ impl AmplitudeEquation {
             .clone()
             .unwrap_or_else(|| Expr::number(rounded(root.value.sqrt())));
         let remark = radical.is_none().then(|| {
-            let term = |(k, c): (usize, &Rational)| Polynomial::term(Monomial::power_of(z, k as i32), c.clone());
+            let term = |(k, c): (usize, &Rational)| {
+                Polynomial::term(Monomial::power_of(z, k as i32), c.clone())
+            };
             let terms = root.factor.iter().enumerate().map(term);
             Note::RoundedAmplitude {
                 amplitude: name,
@@ -181,14 +209,19 @@ impl AmplitudeEquation {
         });
         // a0^(2 degree) = -(lower powers), and 1/J = -1/(2 z^(lowest + 1) h'(z)) modulo the factor.
         let in_name = |list: &[Rational]| {
-            let term = |(k, c): (usize, &Rational)| Polynomial::term(Monomial::power_of(name, 2 * k as i32), c.clone());
+            let term = |(k, c): (usize, &Rational)| {
+                Polynomial::term(Monomial::power_of(name, 2 * k as i32), c.clone())
+            };
             list.iter()
                 .enumerate()
                 .map(term)
                 .fold(Polynomial::zero(), |sum, term| sum + term)
         };
         let leading = &root.factor[degree as usize];
-        let lower: Vec<Rational> = root.factor[..degree as usize].iter().map(|c| -(c / leading)).collect();
+        let lower: Vec<Rational> = root.factor[..degree as usize]
+            .iter()
+            .map(|c| -(c / leading))
+            .collect();
         let mut whole = vec![Rational::zero(); self.lowest as usize + 1];
         whole.extend(slope.iter().map(|c| c * ratio(-2, 1)));
         let inverse = inverse_modulo(&remainder(&whole, &root.factor), &root.factor);
@@ -200,7 +233,8 @@ impl AmplitudeEquation {
                 meaning: amplitude.clone(),
             }),
             amplitude,
-            inverse_slope: inverse.map(|list| in_name(&list).times_monomial(&self.factor.power(-1))),
+            inverse_slope: inverse
+                .map(|list| in_name(&list).times_monomial(&self.factor.power(-1))),
             remark,
             relation: Some(Relation {
                 symbol: name,
@@ -210,13 +244,21 @@ impl AmplitudeEquation {
         }
     }
 
-    /// The cycle of `h_0 + h_m z^m` with symbols: `z^m = -h_0/h_m`, and `J = 2 m z^lowest h_0` there.
-    fn two_terms(&self, highest: usize, name: Symbol, signs: &Monomial) -> Result<Vec<Cycle>, &'static str> {
+    /// The cycle of `h_0 + h_m z^m` with symbols: `z^m = -h_0/h_m`, and `J = 2 m z^lowest h_0`
+    /// there.
+    fn two_terms(
+        &self,
+        highest: usize,
+        name: Symbol,
+        signs: &Monomial,
+    ) -> Result<Vec<Cycle>, &'static str> {
         let (low, high) = (&self.rest[0], &self.rest[highest]);
         let m = highest as i32;
         let scale = |value: i64| Polynomial::constant(Rational::from_integer(value.into()));
         let times = |polynomial: &Polynomial, number: i64| polynomial.product(&scale(number));
-        let ratio_of_terms = high.power(-1).map(|inverse| times(&low.product(&inverse), -1));
+        let ratio_of_terms = high
+            .power(-1)
+            .map(|inverse| times(&low.product(&inverse), -1));
         let single = |polynomial: &Polynomial| {
             polynomial
                 .single_term()
@@ -224,7 +266,11 @@ impl AmplitudeEquation {
         };
         // z h'(z) = m h_m z^m = -m h_0: of the two the one whose sign a single term shows.
         let (direction, factor_of_slope, exponent) = match (single(low), single(high)) {
-            (_, Some((monomial, number))) => ((monomial, -number), times(high, -2 * i64::from(m)), self.lowest + m),
+            (_, Some((monomial, number))) => (
+                (monomial, -number),
+                times(high, -2 * i64::from(m)),
+                self.lowest + m,
+            ),
             (Some(term), None) => (term, times(low, 2 * i64::from(m)), self.lowest),
             (None, None) => return Err("which divides by a sum of symbols"),
         };
@@ -234,12 +280,16 @@ impl AmplitudeEquation {
             number.signum(),
         ));
         let power_of_root = Expr::number(ratio(1, 2 * i64::from(m)));
-        let root = |value: &Expr| Expr::power(value, &power_of_root).map_err(|_| "whose root is not real");
+        let root =
+            |value: &Expr| Expr::power(value, &power_of_root).map_err(|_| "whose root is not real");
         let squared = ratio_of_terms.filter(|value| value.single_term().is_some());
         let Some(squared) = squared else {
-            let quotient = Expr::divide(&-&Expr::from(low), &Expr::from(high)).map_err(|_| "which divides by zero")?;
+            let quotient = Expr::divide(&-&Expr::from(low), &Expr::from(high))
+                .map_err(|_| "which divides by zero")?;
             let amplitude = root(&quotient)?;
-            let inverse = factor_of_slope.power(-1).ok_or("which divides by a sum of symbols")?;
+            let inverse = factor_of_slope
+                .power(-1)
+                .ok_or("which divides by a sum of symbols")?;
             let inverse = inverse.times_monomial(&Monomial::power_of(name, -2 * exponent));
             return Ok(vec![Cycle {
                 attracts_where,
@@ -254,7 +304,10 @@ impl AmplitudeEquation {
                 relation: None,
             }]);
         };
-        if squared.single_term().is_some_and(|(_, number)| !number.is_positive()) {
+        if squared
+            .single_term()
+            .is_some_and(|(_, number)| !number.is_positive())
+        {
             return Ok(vec![]);
         }
         let exact = root_of_term(&squared, 2 * m);
@@ -285,11 +338,20 @@ impl AmplitudeEquation {
 impl Cycle {
     /// A polynomial with the powers of `a0` that can be expressed by lower ones so expressed.
     pub fn reduced(&self, polynomial: &Polynomial) -> Polynomial {
-        let Some(Relation { symbol, degree, value }) = &self.relation else {
+        let Some(Relation {
+            symbol,
+            degree,
+            value,
+        }) = &self.relation
+        else {
             return polynomial.clone();
         };
         let mut reduced = polynomial.clone();
-        let inverse = value.single_term().is_some().then(|| value.power(-1)).flatten();
+        let inverse = value
+            .single_term()
+            .is_some()
+            .then(|| value.power(-1))
+            .flatten();
         loop {
             let mut next = Polynomial::zero();
             let mut changed = false;
@@ -331,7 +393,10 @@ impl Cycle {
 
     /// Whether it attracts for small positive values of everything.
     pub fn attracts(&self) -> bool {
-        let term = self.attracts_where.as_ref().and_then(Polynomial::single_term);
+        let term = self
+            .attracts_where
+            .as_ref()
+            .and_then(Polynomial::single_term);
         term.is_some_and(|(_, number)| number.is_positive())
     }
 }
@@ -340,13 +405,15 @@ impl Cycle {
 pub(super) struct Units {
     /// The linear frequency, a single term.
     pub frequency: Polynomial,
-    /// Its square, where even powers are better written with it: `x'` and `x'^3` then have like terms.
+    /// Its square, where even powers are better written with it: `x'` and `x'^3` then have like
+    /// terms.
     square: Option<Polynomial>,
 }
 
 impl Units {
-    /// The square takes the place of even powers where it is a number, so that a letter such as `omega0 = sqrt(2)` stays out of the
-    /// expansion, and where the equation for the amplitude has sums without it.
+    /// The square takes the place of even powers where it is a number, so that a letter such as
+    /// `omega0 = sqrt(2)` stays out of the expansion, and where the equation for the amplitude has
+    /// sums without it.
     pub fn new(force: &PerturbedForce, frequency: Polynomial) -> Self {
         let plain = Self {
             frequency,
@@ -377,7 +444,8 @@ impl Units {
         let halves = exponent.div_euclid(2);
         let power = match &self.square {
             None => self.frequency.power(exponent),
-            // An odd power is one below the next even one, so that a factor 1/omega0 is common to all damping terms.
+            // An odd power is one below the next even one, so that a factor 1/omega0 is common to
+            // all damping terms.
             Some(square) if exponent.is_odd() => square
                 .power(halves + 1)
                 .and_then(|even| Some(even.product(&self.frequency.power(-1)?))),
@@ -387,12 +455,16 @@ impl Units {
     }
 }
 
-/// The number of the cycle to expand from: the one asked for, else the smallest that attracts for small positive parameters,
-/// else the smallest.
+/// The number of the cycle to expand from: the one asked for, else the smallest that attracts for
+/// small positive parameters, else the smallest.
 ///
 /// # Errors
 /// `none` where there is no cycle, and a number that is too large.
-pub(super) fn chosen(cycles: &[Cycle], asked: Option<u32>, none: impl Fn() -> Refusal) -> Result<usize, Refusal> {
+pub(super) fn chosen(
+    cycles: &[Cycle],
+    asked: Option<u32>,
+    none: impl Fn() -> Refusal,
+) -> Result<usize, Refusal> {
     if cycles.is_empty() {
         return Err(none());
     }
@@ -414,7 +486,10 @@ pub(super) fn chosen(cycles: &[Cycle], asked: Option<u32>, none: impl Fn() -> Re
 }
 
 /// The amplitude of a motion in a convention.
-pub(super) fn amplitude_of(displacement: &FourierSeries<Polynomials>, convention: AmplitudeConvention) -> Polynomial {
+pub(super) fn amplitude_of(
+    displacement: &FourierSeries<Polynomials>,
+    convention: AmplitudeConvention,
+) -> Polynomial {
     match convention {
         AmplitudeConvention::Initial => displacement.at_zero().constant_term(),
         AmplitudeConvention::FirstHarmonic => displacement.cosine(1).constant_term(),
@@ -431,7 +506,11 @@ fn coefficients(force: &PerturbedForce, units: &Units) -> Vec<Polynomial> {
     for term in first {
         let sine = FourierSeries::cos(Rationals, 1)
             .power(term.position)
-            .product(&FourierSeries::sin(Rationals, 1).times(-1).power(term.velocity))
+            .product(
+                &FourierSeries::sin(Rationals, 1)
+                    .times(-1)
+                    .power(term.velocity),
+            )
             .sine(1);
         let (weight, _) = sine.mean();
         if weight.is_zero() {
@@ -461,14 +540,19 @@ fn common_monomial(polynomials: &[Polynomial]) -> Monomial {
             .iter()
             .flat_map(|polynomial| polynomial.terms().map(|(monomial, _)| monomial))
     };
-    let symbols: std::collections::BTreeSet<Symbol> = polynomials.iter().flat_map(Polynomial::symbols).collect();
+    let symbols: std::collections::BTreeSet<Symbol> =
+        polynomials.iter().flat_map(Polynomial::symbols).collect();
     symbols.into_iter().fold(Monomial::one(), |common, symbol| {
-        let lowest = terms().map(|monomial| monomial.exponent(symbol)).min().unwrap_or(0);
+        let lowest = terms()
+            .map(|monomial| monomial.exponent(symbol))
+            .min()
+            .unwrap_or(0);
         common.product(&Monomial::power_of(symbol, lowest))
     })
 }
 
-/// What of a monomial decides its sign: odd powers, but not of the linear frequency, which is positive.
+/// What of a monomial decides its sign: odd powers, but not of the linear frequency, which is
+/// positive.
 fn sign_of(monomial: &Monomial, linear_frequency: &Polynomial) -> Monomial {
     let positive = linear_frequency.symbols();
     let odd = monomial

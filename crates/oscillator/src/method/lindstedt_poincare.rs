@@ -1,7 +1,8 @@
 //! The method of Lindstedt and Poincare: strained time, secular terms eliminated order by order.
 //!
-//! References: A. Lindstedt, Mem. Acad. Imp. Sci. St. Petersbourg 31 (1883); H. Poincare, *Les methodes nouvelles de la
-//! mecanique celeste* II (1893); A. H. Nayfeh, *Perturbation Methods*, Wiley 1973, section 3.1.
+//! References: A. Lindstedt, Mem. Acad. Imp. Sci. St. Petersbourg 31 (1883); H. Poincare, *Les
+//! methodes nouvelles de la mecanique celeste* II (1893); A. H. Nayfeh, *Perturbation Methods*,
+//! Wiley 1973, section 3.1.
 //!
 //! ```text
 //! x'' + omega0^2 x + sum_j delta^(a_j) c_j x^p x'^q = 0,      theta = omega t
@@ -9,11 +10,12 @@
 //! y'' + y + sum_j delta^(a_j) C_j y^p (omega y'/omega0)^q = 0,  C_j = c_j A^(p+q-1) omega0^(q-2)
 //! ```
 //!
-//! What remains is [`secular::expand`](super::secular::expand), over whole numbers where every symbol can be scaled away (Duffing depends on
-//! `eps*A^2` alone) and over polynomials otherwise.
+//! What remains is [`secular::expand`](super::secular::expand), over whole numbers where every
+//! symbol can be scaled away (Duffing depends on `eps*A^2` alone) and over polynomials otherwise.
 //!
-//! Self-excited equations determine their amplitude: `A` is then a root of the secular sine of the first order,
-//! `sum_j C_j(A) [cos^p (-sin)^q]_sin = 0`, as [`limit_cycle`](super::limit_cycle) finds it.
+//! Self-excited equations determine their amplitude: `A` is then a root of the secular sine of the
+//! first order, `sum_j C_j(A) [cos^p (-sin)^q]_sin = 0`, as [`limit_cycle`](super::limit_cycle)
+//! finds it.
 //!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
@@ -109,7 +111,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         in_numbers(reduced(cycle, coefficient.product(&unit)))
     });
     // In powers of the amplitude, the small parameter is the symbol that stands for it.
-    let small = perturbation.marker.map_or(convention.symbol(), |_| perturbation.small);
+    let small = perturbation
+        .marker
+        .map_or(convention.symbol(), |_| perturbation.small);
     let amplitude = match extent {
         Extent::Motion => amplitude_of(&displacement, convention),
         // To leading order: the rest of it belongs to the motion.
@@ -192,8 +196,8 @@ impl LinearPart {
     }
 }
 
-/// The definitions of the force that a formula about it needs: constants of the linear force alone are written out in that of
-/// the linear frequency.
+/// The definitions of the force that a formula about it needs: constants of the linear force alone
+/// are written out in that of the linear frequency.
 fn constants_beside(force: &PerturbedForce, linear_frequency: &Polynomial) -> Vec<Definition> {
     let coefficients = force.terms.iter().map(|term| &term.coefficient);
     let used: BTreeSet<Symbol> = coefficients
@@ -221,7 +225,12 @@ impl SelfExcitation {
     }
 
     /// The answer's part of it; `small` is the small parameter of the answer.
-    fn limit_cycle(&self, perturbation: &Perturbation, small: Symbol, amplitude: Polynomial) -> LimitCycle {
+    fn limit_cycle(
+        &self,
+        perturbation: &Perturbation,
+        small: Symbol,
+        amplitude: Polynomial,
+    ) -> LimitCycle {
         let marker = perturbation.marker.unwrap_or(small);
         LimitCycle {
             amplitude,
@@ -255,7 +264,9 @@ fn self_excitation(
         reason,
     };
     let marker = perturbation.marker.unwrap_or(perturbation.small);
-    let cycles = equation.cycles(marker, &units.frequency, taken).map_err(without)?;
+    let cycles = equation
+        .cycles(marker, &units.frequency, taken)
+        .map_err(without)?;
     if perturbation.marker.is_none() {
         return Err(Refusal::AmplitudeNotFree {
             term: first_term(&parts.damping),
@@ -268,7 +279,9 @@ fn self_excitation(
         },
     })?;
     if cycles[number - 1].attracts_where.is_none() {
-        return Err(without("a multiple root: no expansion in powers begins there"));
+        return Err(without(
+            "a multiple root: no expansion in powers begins there",
+        ));
     }
     Ok(Some(SelfExcitation {
         equation,
@@ -277,9 +290,13 @@ fn self_excitation(
     }))
 }
 
-/// What the motion is measured in: the amplitude of the cycle to leading order, or the symbol of a free one.
+/// What the motion is measured in: the amplitude of the cycle to leading order, or the symbol of a
+/// free one.
 fn unit_of(cycle: Option<&Cycle>, convention: AmplitudeConvention) -> Polynomial {
-    cycle.map_or_else(|| Polynomial::symbol(convention.symbol()), |cycle| cycle.unit.clone())
+    cycle.map_or_else(
+        || Polynomial::symbol(convention.symbol()),
+        |cycle| cycle.unit.clone(),
+    )
 }
 
 /// A polynomial in lowest powers of what the amplitude of the cycle is a root of.
@@ -308,7 +325,11 @@ fn expanded(
         },
         detuning: Detuning::Acceleration,
     };
-    let terms = scaled_terms(&perturbation.force.terms, &unit_of(cycle, convention), units);
+    let terms = scaled_terms(
+        &perturbation.force.terms,
+        &unit_of(cycle, convention),
+        units,
+    );
     let terms: Vec<Term> = terms
         .into_iter()
         .map(|term| Term {
@@ -319,9 +340,19 @@ fn expanded(
     let delta = perturbation.delta(convention);
     let inverse_slope = cycle.and_then(|cycle| cycle.inverse_slope.as_ref());
     let order = perturbation.order;
-    let series = expand_exactly(&terms, order, &scheme, Some(delta), inverse_slope, names, supervision);
+    let series = expand_exactly(
+        &terms,
+        order,
+        &scheme,
+        Some(delta),
+        inverse_slope,
+        names,
+        supervision,
+    );
     let mut series = series.map_err(|error| match error {
-        SecularError::Growth { .. } | SecularError::Degenerate { .. } if !parts.damping.is_zero() => {
+        SecularError::Growth { .. } | SecularError::Degenerate { .. }
+            if !parts.damping.is_zero() =>
+        {
             damping_or_excitation(parts)
         }
         error => error.into(),
@@ -330,31 +361,36 @@ fn expanded(
         let is_parameter = delta == perturbation.small;
         // What marked the order of a term is one where it is no parameter of the answer.
         let one = Polynomial::constant(One::one());
-        let unmarked = |polynomial: &Polynomial| match (is_parameter, polynomial.substitute(delta, &one)) {
-            (false, Some(unmarked)) => reduced(cycle, unmarked),
-            _ => reduced(cycle, polynomial.clone()),
-        };
+        let unmarked =
+            |polynomial: &Polynomial| match (is_parameter, polynomial.substitute(delta, &one)) {
+                (false, Some(unmarked)) => reduced(cycle, unmarked),
+                _ => reduced(cycle, polynomial.clone()),
+            };
         series.change_coefficients(&unmarked);
         if let Some(start) = series.steps.first_mut() {
             let marked = is_parameter.then_some(delta);
-            let condition =
-                excited
-                    .equation
-                    .condition(excited.cycle(), fresh(&format!("{FIRST_HARMONIC}0"), names.0), marked);
+            let condition = excited.equation.condition(
+                excited.cycle(),
+                fresh(&format!("{FIRST_HARMONIC}0"), names.0),
+                marked,
+            );
             start.amplitude = Some(condition);
         }
     }
     Ok(series)
 }
 
-/// A polynomial in a root of a number, its even powers written as the number: `sqrt(2)^2` as 2, `1/sqrt(2)^3` as half of
-/// `1/sqrt(2)`. What cancels between the powers does so exactly.
+/// A polynomial in a root of a number, its even powers written as the number: `sqrt(2)^2` as 2,
+/// `1/sqrt(2)^3` as half of `1/sqrt(2)`. What cancels between the powers does so exactly.
 pub(super) fn with_square(polynomial: &Polynomial, root: Symbol, square: &Rational) -> Polynomial {
     let mut written = Polynomial::zero();
     for (monomial, number) in polynomial.terms() {
         let pairs = monomial.exponent(root) / 2;
         let rest = Monomial::power_of(root, monomial.exponent(root) % 2);
-        written.add_term(monomial.without(root).product(&rest), number * square.pow(pairs));
+        written.add_term(
+            monomial.without(root).product(&rest),
+            number * square.pow(pairs),
+        );
     }
     written
 }
@@ -385,27 +421,47 @@ impl Perturbation {
         Note::Cut(Cut::Truncated {
             small: std::iter::once(small).chain(together).collect(),
             order: self.order,
-            marks: self.bookkeeping.as_ref().map(|definition| definition.meaning.clone()),
+            marks: self
+                .bookkeeping
+                .as_ref()
+                .map(|definition| definition.meaning.clone()),
         })
     }
 }
 
-/// The first order in a parameter, of a force that is no polynomial; `None` where the amplitude is the small parameter.
-fn in_a_parameter(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Option<Solution>, Refusal> {
+/// The first order in a parameter, of a force that is no polynomial; `None` where the amplitude is
+/// the small parameter.
+fn in_a_parameter(
+    oscillator: &Oscillator,
+    parts: &Parts,
+    options: &Options,
+) -> Result<Option<Solution>, Refusal> {
     match oscillator.small_parameter(options.small.as_deref()) {
         // Such a force has no higher order to default to.
-        Ok(SmallParameter::Parameter(small)) => {
-            first_order::solve(oscillator, parts, options, small, options.order.unwrap_or(1))
-        }
+        Ok(SmallParameter::Parameter(small)) => first_order::solve(
+            oscillator,
+            parts,
+            options,
+            small,
+            options.order.unwrap_or(1),
+        ),
         _ => Ok(None),
     }
 }
 
-/// The force in powers of the small parameter; of a self-excited equation that has none, in powers of one that marks all
-/// terms but the linear one.
-fn perturbation(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Perturbation, Refusal> {
+/// The force in powers of the small parameter; of a self-excited equation that has none, in powers
+/// of one that marks all terms but the linear one.
+fn perturbation(
+    oscillator: &Oscillator,
+    parts: &Parts,
+    options: &Options,
+) -> Result<Perturbation, Refusal> {
     let small = oscillator.small_parameter(options.small.as_deref())?;
-    let default = if small == SmallParameter::Amplitude { 4 } else { 2 };
+    let default = if small == SmallParameter::Amplitude {
+        4
+    } else {
+        2
+    };
     let order = options.order.unwrap_or(default);
     let expanded = oscillator.expand(small, order);
     if let Ok(force) = &expanded {
@@ -444,15 +500,22 @@ fn perturbation(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Re
     }
     let force = match expanded {
         // What stops the expansion is named as what it is.
-        Err(OscillatorError::NotSmall { .. }) if small == SmallParameter::Amplitude && !parts.damping.is_zero() => {
+        Err(OscillatorError::NotSmall { .. })
+            if small == SmallParameter::Amplitude && !parts.damping.is_zero() =>
+        {
             return Err(damping_or_excitation(parts));
         }
-        Err(OscillatorError::NotSmall { term, .. }) if parts.damping.terms().contains(term.expression()) => {
+        Err(OscillatorError::NotSmall { term, .. })
+            if parts.damping.terms().contains(term.expression()) =>
+        {
             return Err(Unsuited::damping(term).by(Refuser::Expansion));
         }
         // |x'| x', a dry friction and their like damp whether or not they have a series.
-        Err(OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(TaylorError::NotAnalytic { .. }))
-            if !parts.damping.is_zero() && (small == SmallParameter::Amplitude || parts.damping.terms().len() == 1) =>
+        Err(
+            OscillatorError::NotPolynomial(_)
+            | OscillatorError::Taylor(TaylorError::NotAnalytic { .. }),
+        ) if !parts.damping.is_zero()
+            && (small == SmallParameter::Amplitude || parts.damping.terms().len() == 1) =>
         {
             return Err(damping_or_excitation(parts));
         }
@@ -472,14 +535,18 @@ fn perturbation(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Re
     })
 }
 
-/// An error where powers are so high that even the first order of the amplitude would take too long.
+/// An error where powers are so high that even the first order of the amplitude would take too
+/// long.
 fn within_reach(force: &PerturbedForce, parts: &Parts, order: u32) -> Result<(), SecularError> {
     let terms = force
         .terms
         .iter()
         .map(|term| (term.order, term.position + term.velocity));
     // The last amplitude of a limit cycle follows from one order more.
-    bounded(terms, order as usize + usize::from(!parts.damping.is_zero()))
+    bounded(
+        terms,
+        order as usize + usize::from(!parts.damping.is_zero()),
+    )
 }
 
 /// Whether the amplitude changes, at whatever order of an expansion in it.
@@ -505,7 +572,8 @@ fn damped(parts: &Parts) -> Refusal {
     Unsuited::damping(term).by(Refuser::Expansion)
 }
 
-/// A term that feeds energy for some motions and drains it for others is no mere damping; which it is, the sign cannot tell.
+/// A term that feeds energy for some motions and drains it for others is no mere damping; which it
+/// is, the sign cannot tell.
 fn damping_or_excitation(parts: &Parts) -> Refusal {
     match parts.damping.terms() {
         [_] => damped(parts),
@@ -515,7 +583,8 @@ fn damping_or_excitation(parts: &Parts) -> Refusal {
     }
 }
 
-/// The terms in `y = x / unit` and the time of the linear frequency: `C_j` in the head of this file.
+/// The terms in `y = x / unit` and the time of the linear frequency: `C_j` in the head of this
+/// file.
 fn scaled_terms(terms: &[Term], unit: &Polynomial, units: &Units) -> Vec<Term> {
     let scale = |term: &Term| {
         let exponent = (term.position + term.velocity) as i32 - 1;
@@ -538,13 +607,19 @@ mod tests {
     fn removable_singularities_are_their_series() {
         for (quotient, series) in [
             ("(1 - cos(x))/x", "x/2 - x^3/24 + x^5/720"),
-            ("(exp(x) - 1)/x - 1", "x/2 + x^2/6 + x^3/24 + x^4/120 + x^5/720"),
+            (
+                "(exp(x) - 1)/x - 1",
+                "x/2 + x^2/6 + x^3/24 + x^4/120 + x^5/720",
+            ),
             ("x^2/tan(x)", "x - x^3/3 - x^5/45"),
         ] {
             let laws = [quotient, series].map(|force| {
                 let oscillator = Oscillator::parse(&format!("x'' + {force} = 0")).unwrap();
                 let solution = crate::method::solve(&oscillator, &Options::default()).unwrap();
-                (solution.law.frequency_squared().cloned(), solution.displacement)
+                (
+                    solution.law.frequency_squared().cloned(),
+                    solution.displacement,
+                )
             });
             assert_eq!(laws[0], laws[1], "{quotient}");
         }
@@ -562,7 +637,8 @@ mod tests {
             ("x'' + x + x'*abs(x) = 0", "x'*abs(x)"),
             ("x'' + x + c*x'^(1/3) = 0", "c*x'^(1/3)"),
         ] {
-            let refusal = solve(&Oscillator::parse(equation).unwrap(), &Options::default()).unwrap_err();
+            let refusal =
+                solve(&Oscillator::parse(equation).unwrap(), &Options::default()).unwrap_err();
             let term = crate::expr::parse_expression(term).unwrap().into();
             let expected = Unsuited::damping(term).by(Refuser::Expansion);
             assert_eq!(refusal, expected, "{equation}");

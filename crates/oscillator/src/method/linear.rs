@@ -1,4 +1,5 @@
-//! Linear equations with constant coefficients, free or driven by waves of any frequencies: their exact motion from rest at `x = A`.
+//! Linear equations with constant coefficients, free or driven by waves of any frequencies: their
+//! exact motion from rest at `x = A`.
 //!
 //! Reference: L. Meirovitch, *Fundamentals of Vibrations*, McGraw-Hill 2001, chapters 2 and 3.
 //!
@@ -22,7 +23,9 @@ use crate::expr::{Expr, ExprError, Function};
 use crate::oscillator::Oscillator;
 use crate::solution::modulation::Release;
 use crate::solution::note::{ExactBy, LinearDrive};
-use crate::solution::{AmplitudeConvention, ClosedForm, Definition, Law, Method, Modulation, Note, Response, Solution};
+use crate::solution::{
+    AmplitudeConvention, ClosedForm, Definition, Law, Method, Modulation, Note, Response, Solution,
+};
 use crate::symbol::{Symbol, fresh};
 
 /// A linear equation with constant coefficients that something damps, feeds or drives.
@@ -48,14 +51,18 @@ pub(super) fn is_free_and_linear(oscillator: &Oscillator) -> Result<bool, Refusa
         return Ok(false);
     }
     let x = Expr::from(oscillator.coordinate);
-    let stiffness = parts.restoring.differentiate(oscillator.coordinate)?.expand()?;
+    let stiffness = parts
+        .restoring
+        .differentiate(oscillator.coordinate)?
+        .expand()?;
     let is_all = (&parts.restoring - &(&stiffness * &x)).expand()?.is_zero();
     let is_constant = !stiffness.contains(oscillator.coordinate);
     Ok(is_all && is_constant && !stiffness.is_zero() && !stiffness.has_leading_minus())
 }
 
 impl Linear {
-    /// `None` where a term is not linear, or a coefficient or a drive is no constant and no wave; and where nothing drives or damps.
+    /// `None` where a term is not linear, or a coefficient or a drive is no constant and no wave;
+    /// and where nothing drives or damps.
     ///
     /// # Errors
     /// The equation cannot be taken apart.
@@ -69,15 +76,20 @@ impl Linear {
             Ok(is_constant.then_some(coefficient))
         };
         let still = parts.damping.is_zero() && parts.forcing.is_zero();
-        if still || !parts.inertia.is_zero() || own.iter().any(|name| parts.forcing.contains(*name)) {
+        if still || !parts.inertia.is_zero() || own.iter().any(|name| parts.forcing.contains(*name))
+        {
             return Ok(None);
         }
-        let coefficients = (constant(&parts.damping, own[1])?, constant(&parts.restoring, own[0])?);
+        let coefficients = (
+            constant(&parts.damping, own[1])?,
+            constant(&parts.restoring, own[0])?,
+        );
         let (Some(damping), Some(stiffness)) = coefficients else {
             return Ok(None);
         };
         let waves = parts.forcing.terms().iter().filter(|term| !term.is_zero());
-        let waves: Result<Vec<Wave>, _> = waves.map(|term| Wave::new(term, Method::Exact)).collect();
+        let waves: Result<Vec<Wave>, _> =
+            waves.map(|term| Wave::new(term, Method::Exact)).collect();
         let restores = !stiffness.is_zero() && !stiffness.has_leading_minus();
         Ok(waves.ok().filter(|_| restores).map(|waves| Self {
             damping,
@@ -90,7 +102,11 @@ impl Linear {
     ///
     /// # Errors
     /// The amplitude is asked for by another convention than the one that suits.
-    pub(super) fn solve(&self, oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+    pub(super) fn solve(
+        &self,
+        oscillator: &Oscillator,
+        options: &Options,
+    ) -> Result<Solution, Refusal> {
         let rate = Expr::divide(&self.damping, &Expr::from(2))?;
         let square = (&self.stiffness - &(&rate * &rate)).expand()?;
         let sign = match square.is_zero() {
@@ -122,7 +138,12 @@ impl Linear {
         mut solution: Solution,
     ) -> Result<Solution, Refusal> {
         let mut taken = oscillator.names();
-        let frequency = named("omega_d", square.sqrt()?, &mut solution.definitions, &mut taken);
+        let frequency = named(
+            "omega_d",
+            square.sqrt()?,
+            &mut solution.definitions,
+            &mut taken,
+        );
         let a = AmplitudeConvention::FirstHarmonic.symbol();
         let start = Expr::from(AmplitudeConvention::Initial.symbol());
         let lag = Expr::function(Function::Atan, vec![Expr::divide(rate, &frequency)?])?;
@@ -131,7 +152,8 @@ impl Linear {
             phase: -&lag,
         };
         let rates = [(-&(rate * &Expr::from(a))).expand()?, frequency.clone()];
-        let (defined, transient) = transient::from_release(a, [&rates[0], &rates[1]], &mut release, &taken);
+        let (defined, transient) =
+            transient::from_release(a, [&rates[0], &rates[1]], &mut release, &taken);
         solution
             .validity
             .extend(solution.definitions.clone().into_iter().map(Note::Positive));
@@ -186,7 +208,12 @@ impl Linear {
         let speed = -&at_start(&forced.differentiate(t)?)?;
         let decay = |rate: &Expr| Expr::function(Function::Exp, vec![(-&(rate * &time)).expand()?]);
         let free = if sign > 0.0 {
-            let frequency = named("omega_d", square.sqrt()?, &mut solution.definitions, &mut taken);
+            let frequency = named(
+                "omega_d",
+                square.sqrt()?,
+                &mut solution.definitions,
+                &mut taken,
+            );
             solution
                 .validity
                 .extend(solution.definitions.clone().into_iter().map(Note::Positive));
@@ -216,14 +243,16 @@ impl Linear {
         };
         let dies_out = !self.damping.is_zero() && !self.damping.has_leading_minus();
         if dies_out && !self.waves.is_empty() {
-            solution.validity.push(Note::LinearDrive(LinearDrive::Steady {
-                coordinate: oscillator.coordinate,
-                motion: forced.clone(),
-                amplitude: match self.waves.as_slice() {
-                    [only] => Some(self.steady_amplitude(only)?),
-                    _ => None,
-                },
-            }));
+            solution
+                .validity
+                .push(Note::LinearDrive(LinearDrive::Steady {
+                    coordinate: oscillator.coordinate,
+                    motion: forced.clone(),
+                    amplitude: match self.waves.as_slice() {
+                        [only] => Some(self.steady_amplitude(only)?),
+                        _ => None,
+                    },
+                }));
         }
         if self.damping.has_leading_minus() {
             solution.validity.push(Note::Grows);
@@ -272,7 +301,10 @@ impl Linear {
                 let below = Expr::from(2) * &wave.rate;
                 let growing = &Expr::divide(&size, &below)? * &(&time * &quarter_later);
                 let term = &size * &wave_itself;
-                return Ok((growing, Some(Note::LinearDrive(LinearDrive::Grows { term }))));
+                return Ok((
+                    growing,
+                    Some(Note::LinearDrive(LinearDrive::Grows { term })),
+                ));
             }
             let note = spring.as_number().is_none().then(|| {
                 Note::LinearDrive(LinearDrive::Detuned {
@@ -290,7 +322,11 @@ impl Linear {
 }
 
 /// The equation that the exponents of a free motion solve.
-fn characteristic(oscillator: &Oscillator, damping: &Expr, stiffness: &Expr) -> Result<Line, Refusal> {
+fn characteristic(
+    oscillator: &Oscillator,
+    damping: &Expr,
+    stiffness: &Expr,
+) -> Result<Line, Refusal> {
     let exponent = Expr::from(fresh("lambda", &oscillator.names()));
     let left = exponent.integer_power(2)? + damping * &exponent + stiffness.clone();
     Ok(Line::equation(left, Expr::zero()).because("a free motion exp(lambda*t) has"))
@@ -308,12 +344,20 @@ fn law(frequency: &Expr) -> Result<Law, ExprError> {
 }
 
 /// A value, by a name where it is more than a number or a symbol.
-fn named(wanted: &str, value: Expr, definitions: &mut Vec<Definition>, taken: &mut Vec<Symbol>) -> Expr {
+fn named(
+    wanted: &str,
+    value: Expr,
+    definitions: &mut Vec<Definition>,
+    taken: &mut Vec<Symbol>,
+) -> Expr {
     if value.as_number().is_some() || value.as_symbol().is_some() {
         return value;
     }
     let symbol = fresh(wanted, taken);
     taken.push(symbol);
-    definitions.push(Definition { symbol, meaning: value });
+    definitions.push(Definition {
+        symbol,
+        meaning: value,
+    });
     Expr::from(symbol)
 }

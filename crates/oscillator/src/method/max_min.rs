@@ -1,6 +1,7 @@
 //! He's max-min approach: omega^2 lies between the least and the largest of `f(x)/x`.
 //!
-//! Reference: J.-H. He, *Max-min approach to nonlinear oscillators*, Int. J. Nonlinear Sci. Numer. Simul. 9 (2008) 207-210.
+//! Reference: J.-H. He, *Max-min approach to nonlinear oscillators*, Int. J. Nonlinear Sci. Numer.
+//! Simul. 9 (2008) 207-210.
 //!
 //! ```text
 //! x'' + [f(x)/x] x = 0:    min f/x < omega^2 < max f/x    over 0 < |x| <= A
@@ -8,8 +9,9 @@
 //! no secular term in x'' + omega^2 x = omega^2 x - f(x), x = A cos(theta), fixes k
 //! ```
 //!
-//! The last condition makes omega^2 the [shared integral](super::one_term); the bounds are what the method adds, and where
-//! there are none, as for a force that is steeper than linear at rest, it does not apply.
+//! The last condition makes omega^2 the [shared integral](super::one_term); the bounds are what the
+//! method adds, and where there are none, as for a force that is steeper than linear at rest, it
+//! does not apply.
 //!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
@@ -29,7 +31,8 @@ use std::collections::BTreeMap;
 use num_traits::{Signed, Zero};
 
 use super::one_term::{
-    compiled, conservative_force, first_order_only, integral_law, law_of, require_odd, solve_by_integral,
+    compiled, conservative_force, first_order_only, integral_law, law_of, require_odd,
+    solve_by_integral,
 };
 use super::{Options, Refusal};
 use crate::conservative::features::Features;
@@ -48,7 +51,8 @@ use crate::symbol::{Symbol, fresh, fresh_stem};
 /// The frequency between the bounds of `f(x)/x`.
 ///
 /// # Errors
-/// A force that is not conservative or not odd, by its term; no finite bounds; an order above the first.
+/// A force that is not conservative or not odd, by its term; no finite bounds; an order above the
+/// first.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     const METHOD: Method = Method::MaxMin;
     first_order_only(options, METHOD)?;
@@ -57,30 +61,40 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let coordinate = oscillator.coordinate;
     let (amplitude, x) = (Expr::symbol("A"), Expr::from(coordinate));
     let quotient = Expr::divide(&force, &x)?.expand()?;
-    let at_rest = stiffness_at_rest(&quotient, &force, oscillator).ok_or_else(|| Refusal::Unbounded {
-        quotient: quotient.to_string(),
-    })?;
-    let at_turning = super::energy_balance::positive_amplitude(&quotient.substitute(coordinate, &amplitude)?)
-        .unwrap_or_else(|| quotient.clone());
+    let at_rest =
+        stiffness_at_rest(&quotient, &force, oscillator).ok_or_else(|| Refusal::Unbounded {
+            quotient: quotient.to_string(),
+        })?;
+    let at_turning =
+        super::energy_balance::positive_amplitude(&quotient.substitute(coordinate, &amplitude)?)
+            .unwrap_or_else(|| quotient.clone());
     let mut solution = solve_by_integral(oscillator, options, METHOD)?;
     let squared: Formula = Expr::symbol("omega").integer_power(2)?.into();
     let names = oscillator.names();
-    let [q, rest, end, turn] = ["q", "q_rest", &format!("q_{AMPLITUDE}"), "q_s"].map(|name| fresh(name, &names));
+    let [q, rest, end, turn] =
+        ["q", "q_rest", &format!("q_{AMPLITUDE}"), "q_s"].map(|name| fresh(name, &names));
     let [lo, hi, share] = ["lo", "hi", "k"].map(|name| Expr::from(fresh(name, &names)));
     let [rest, end] = [rest, end].map(Expr::from);
     let mut lines = vec![
-        Line::equation(q, &quotient).because(format!("{coordinate}'' + {q}*{coordinate} = 0 with the factor")),
+        Line::equation(q, &quotient).because(format!(
+            "{coordinate}'' + {q}*{coordinate} = 0 with the factor"
+        )),
         Line::equation(rest.clone(), &at_rest).because("at rest"),
         Line::equation(end.clone(), &at_turning).because(format!("at {coordinate} = {AMPLITUDE}")),
     ];
     lines.extend(integral_law(oscillator, &force, &solution)?);
     let law = law_of(&solution);
-    let between = |bounds: [&Expr; 2]| Line::equation(squared.clone(), bounds[0] + &share * &(bounds[1] - bounds[0]));
+    let between = |bounds: [&Expr; 2]| {
+        Line::equation(
+            squared.clone(),
+            bounds[0] + &share * &(bounds[1] - bounds[0]),
+        )
+    };
     let range = match turning_backs(oscillator, &quotient, &force) {
         None => {
-            lines.push(
-                between([&rest, &end]).because(format!("while {q} runs from one to the other without turning back")),
-            );
+            lines.push(between([&rest, &end]).because(format!(
+                "while {q} runs from one to the other without turning back"
+            )));
             if let Some((place, value)) = stationary_point(&quotient, coordinate)? {
                 lines.push(Line::equal(place).because(format!(
                     "it turns back where the right side is positive and {AMPLITUDE} lies beyond"
@@ -97,7 +111,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             }
         }
         Some(places) if places.is_empty() => {
-            lines.push(between([&rest, &end]).because(format!("{q} runs from one to the other without turning back")));
+            lines.push(between([&rest, &end]).because(format!(
+                "{q} runs from one to the other without turning back"
+            )));
             BoundsHold::Always
         }
         Some(places) => {
@@ -108,7 +124,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             BoundsHold::UpTo(places[0].0)
         }
     };
-    let turns = lines.iter().any(|line| line.equal.first() == Some(&lo.clone().into()));
+    let turns = lines
+        .iter()
+        .any(|line| line.equal.first() == Some(&lo.clone().into()));
     let exact_share = law.as_ref().filter(|_| !turns).and_then(|law| {
         let above = (law - &at_rest).expand().ok()?;
         quotient_of(&above, &(&at_turning - &at_rest).expand().ok()?)
@@ -116,7 +134,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     if let Some(value) = exact_share {
         lines.push(Line::equation(share, value));
     } else if let (Some(law), true) = (law, turns) {
-        lines.push(Line::equation(share, Expr::divide(&(law - &lo), &(&hi - &lo))?));
+        lines.push(Line::equation(
+            share,
+            Expr::divide(&(law - &lo), &(&hi - &lo))?,
+        ));
     }
     solution.derivation = lines;
     let bounds = Note::Bounds {
@@ -131,24 +152,40 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
 /// The most places where `f(x)/x` turns back that are written out.
 const MOST_PIECES: usize = 4;
 
-/// Where `f(x)/x` turns back for `x > 0`, with its value there, up to the end of the well; `None` where that depends on
-/// parameters.
-fn turning_backs(oscillator: &Oscillator, quotient: &Expr, force: &Expr) -> Option<Vec<(f64, f64)>> {
-    /// The search goes through the decades of what a number can be in SI units, so many points in each.
+/// Where `f(x)/x` turns back for `x > 0`, with its value there, up to the end of the well; `None`
+/// where that depends on parameters.
+fn turning_backs(
+    oscillator: &Oscillator,
+    quotient: &Expr,
+    force: &Expr,
+) -> Option<Vec<(f64, f64)>> {
+    /// The search goes through the decades of what a number can be in SI units, so many points in
+    /// each.
     const DECADES: i32 = 24;
     const POINTS: i32 = 48;
     let coordinate = oscillator.coordinate;
     // A single power changes one way only.
-    let varying = quotient.terms().iter().filter(|term| term.contains(coordinate));
+    let varying = quotient
+        .terms()
+        .iter()
+        .filter(|term| term.contains(coordinate));
     let powers: Vec<bool> = varying.map(|term| is_power(term, coordinate)).collect();
     if powers == [true] || powers.is_empty() {
         return Some(vec![]);
     }
-    if force.symbols().into_iter().any(|symbol| symbol != coordinate) {
+    if force
+        .symbols()
+        .into_iter()
+        .any(|symbol| symbol != coordinate)
+    {
         return None;
     }
     let value = compiled(oscillator, quotient, &BTreeMap::new())?;
-    let slope = compiled(oscillator, &quotient.differentiate(coordinate).ok()?, &BTreeMap::new())?;
+    let slope = compiled(
+        oscillator,
+        &quotient.differentiate(coordinate).ok()?,
+        &BTreeMap::new(),
+    )?;
     let place = |k: i32| 10_f64.powf(f64::from(k) / f64::from(POINTS));
     let mut places: Vec<f64> = (-DECADES * POINTS..=DECADES * POINTS).map(place).collect();
     // Narrow places slip through any grid: they get points of their own.
@@ -188,14 +225,18 @@ fn turning_backs(oscillator: &Oscillator, quotient: &Expr, force: &Expr) -> Opti
 fn of_one_sign(sum: &Expr, coordinate: Symbol) -> bool {
     let positive = |factor: &Expr| {
         let (base, exponent) = factor.base_and_exponent();
-        let known = base.as_symbol().is_some() || base.symbols().is_empty() && !base.has_leading_minus();
+        let known =
+            base.as_symbol().is_some() || base.symbols().is_empty() && !base.has_leading_minus();
         let size = matches!(base.node(), Node::Function(Function::Absolute, arguments) if *arguments == [Expr::from(coordinate)]);
         (known || size) && exponent.as_number().is_some()
     };
     let terms = sum.terms();
     let signs = terms.iter().map(Expr::has_leading_minus);
     let first = terms.first().is_some_and(Expr::has_leading_minus);
-    signs.into_iter().all(|minus| minus == first) && terms.iter().all(|term| term.factors().1.iter().all(positive))
+    signs.into_iter().all(|minus| minus == first)
+        && terms
+            .iter()
+            .all(|term| term.factors().1.iter().all(positive))
 }
 
 /// Whether a term is a power of the coordinate times a constant.
@@ -204,7 +245,8 @@ fn is_power(term: &Expr, coordinate: Symbol) -> bool {
     take_powers(&mut inside, &mut outside, coordinate).is_some() && inside.is_empty()
 }
 
-/// The bounds beyond each place where `f(x)/x` turns back: the least and the largest so far, or the value at `x = A`.
+/// The bounds beyond each place where `f(x)/x` turns back: the least and the largest so far, or the
+/// value at `x = A`.
 fn pieces(
     places: &[(f64, f64)],
     at_rest: &Expr,
@@ -214,7 +256,10 @@ fn pieces(
     let rest = compiled(oscillator, at_rest, &BTreeMap::new()).map_or(f64::NAN, |value| value(0.0));
     let (mut least, mut largest) = (rest, rest);
     let taken = oscillator.names();
-    let (q, [l, h]) = (fresh("q", &taken), ["L", "H"].map(|letter| fresh_stem(letter, &taken)));
+    let (q, [l, h]) = (
+        fresh("q", &taken),
+        ["L", "H"].map(|letter| fresh_stem(letter, &taken)),
+    );
     let mut lines = Vec::new();
     for (index, &(place, value)) in places.iter().enumerate() {
         if index == MOST_PIECES {
@@ -226,7 +271,8 @@ fn pieces(
         }
         (least, largest) = (least.min(value), largest.max(value));
         let number = index + 1;
-        let [least_name, largest_name] = [&l, &h].map(|letter| Symbol::new(&format!("{letter}{number}")));
+        let [least_name, largest_name] =
+            [&l, &h].map(|letter| Symbol::new(&format!("{letter}{number}")));
         lines.push(Line::words(format!(
             "{x} = {}: {q} turns back at {}; up to there the least is {least_name} = {}, the largest {largest_name} = {}",
             decimal(place),
@@ -236,7 +282,11 @@ fn pieces(
             x = oscillator.coordinate
         )));
         let range = match places.get(index + 1) {
-            Some((next, _)) => format!("for {AMPLITUDE} from {} to {}", decimal(place), decimal(*next)),
+            Some((next, _)) => format!(
+                "for {AMPLITUDE} from {} to {}",
+                decimal(place),
+                decimal(*next)
+            ),
             None => format!("for {AMPLITUDE} beyond {}", decimal(place)),
         };
         let minimum = Expr::function(Function::Minimum, vec![least_name.into(), end.clone()])?;
@@ -248,7 +298,10 @@ fn pieces(
 }
 
 /// Of `a + b x^m + c x^n`: where it is stationary, as `x^(n-m) = -m b/(n c)`, and its value there.
-fn stationary_point(quotient: &Expr, coordinate: Symbol) -> Result<Option<(Vec<Formula>, Expr)>, Refusal> {
+fn stationary_point(
+    quotient: &Expr,
+    coordinate: Symbol,
+) -> Result<Option<(Vec<Formula>, Expr)>, Refusal> {
     let Some(polynomial) = quotient.to_polynomial(&mut |_| None)? else {
         return Ok(None);
     };
@@ -307,6 +360,10 @@ fn stiffness_at_rest(quotient: &Expr, force: &Expr, oscillator: &Oscillator) -> 
             _ => None,
         }
     };
-    let terms = quotient.terms().iter().map(term).collect::<Option<Vec<_>>>()?;
+    let terms = quotient
+        .terms()
+        .iter()
+        .map(term)
+        .collect::<Option<Vec<_>>>()?;
     Some(Expr::sum(terms))
 }

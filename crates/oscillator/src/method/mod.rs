@@ -1,11 +1,14 @@
-//! The methods: each takes an [`Oscillator`] and options, and gives a [`Solution`] or a [`Refusal`].
+//! The methods: each takes an [`Oscillator`] and options, and gives a [`Solution`] or a
+//! [`Refusal`].
 //!
-//! In comes the equation with its [`Options`]; [`solve`] looks at it from its equilibrium and asks the method of the table. Out
-//! goes a law and a motion with exact coefficients, the notes on where they hold and the derivation; or the reason why not, with
-//! the term in the way and [`Advice`] on what to try. At numbers, [`numbers`] gives the frequency and the motion of any answer.
+//! In comes the equation with its [`Options`]; [`solve`] looks at it from its equilibrium and asks
+//! the method of the table. Out goes a law and a motion with exact coefficients, the notes on where
+//! they hold and the derivation; or the reason why not, with the term in the way and [`Advice`] on
+//! what to try. At numbers, [`numbers`] gives the frequency and the motion of any answer.
 //!
-//! One file per method, each opening with its reference and equations. To add one: write its file with a function
-//! `solve(&Oscillator, &Options) -> Result<Solution, Refusal>`, give it a name in [`Method`] and a row in [`table::METHODS`].
+//! One file per method, each opening with its reference and equations. To add one: write its file
+//! with a function `solve(&Oscillator, &Options) -> Result<Solution, Refusal>`, give it a name in
+//! [`Method`] and a row in [`table::METHODS`].
 
 pub(crate) mod amplitude_frequency;
 pub mod averaging;
@@ -71,7 +74,8 @@ use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::series::FourierSeries;
 use crate::series::taylor::TaylorError;
 use crate::solution::{
-    Advice, AmplitudeConvention, Degrees, Method, Note, Setting, Solution, constant_in_words, note::Position,
+    Advice, AmplitudeConvention, Degrees, Method, Note, Setting, Solution, constant_in_words,
+    note::Position,
 };
 use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY};
 use crate::symbol::{Symbol, fresh};
@@ -79,7 +83,8 @@ use crate::symbol::{Symbol, fresh};
 /// The highest order any method accepts.
 pub const HIGHEST_ORDER: u32 = 400;
 
-/// The highest order of the [frequency alone](Options::frequency_alone), whose coefficients are fewer.
+/// The highest order of the [frequency alone](Options::frequency_alone), whose coefficients are
+/// fewer.
 pub const HIGHEST_ORDER_OF_FREQUENCY: u32 = 2000;
 
 /// What a user may choose; `None` leaves the choice to the method.
@@ -97,14 +102,18 @@ pub struct Options {
     pub taylor: Option<u32>,
     /// The degrees of an approximant.
     pub degrees: Option<Degrees>,
-    /// The convergence-control parameter of homotopy analysis; a symbol that numbers are chosen for where it is not given.
+    /// The convergence-control parameter of homotopy analysis; a symbol that numbers are chosen for
+    /// where it is not given.
     pub hbar: Option<Expr>,
-    /// Which limit cycle of a self-excited equation, counted from one by amplitude; without it the smallest that attracts.
+    /// Which limit cycle of a self-excited equation, counted from one by amplitude; without it the
+    /// smallest that attracts.
     pub cycle: Option<u32>,
-    /// Which resonance of a driven motion, Omega : omega0; without it the nearest to frequencies in numbers, or the primary one,
-    /// 2:1 where the drive is in a coefficient. Both are whole numbers from 1 to 9.
+    /// Which resonance of a driven motion, Omega : omega0; without it the nearest to frequencies in
+    /// numbers, or the primary one, 2:1 where the drive is in a coefficient. Both are whole numbers
+    /// from 1 to 9.
     pub resonance: Option<(u32, u32)>,
-    /// The frequency without the motion, to a [higher order](HIGHEST_ORDER_OF_FREQUENCY) in less time.
+    /// The frequency without the motion, to a [higher order](HIGHEST_ORDER_OF_FREQUENCY) in less
+    /// time.
     pub frequency_alone: bool,
     /// Who may stop a long expansion, which then ends with the orders that there are.
     ///
@@ -127,9 +136,12 @@ pub struct Options {
 }
 
 impl Options {
-    /// Whether it is said what is small, or how far to go in it: by an option, or by a letter that is called `eps`.
+    /// Whether it is said what is small, or how far to go in it: by an option, or by a letter that
+    /// is called `eps`.
     fn say_what_is_small(&self, oscillator: &Oscillator) -> bool {
-        self.small.is_some() || self.order.is_some() || oscillator.parameters.contains(&Symbol::new("eps"))
+        self.small.is_some()
+            || self.order.is_some()
+            || oscillator.parameters.contains(&Symbol::new("eps"))
     }
 }
 
@@ -151,8 +163,11 @@ pub enum Refusal {
         /// Why not.
         reason: Unsuited,
     },
-    /// A self-excited oscillator whose amplitude the equation determines, asked for in powers of that amplitude.
-    #[error("the term `{term}` feeds or drains energy, so the amplitude is not free and nothing can be expanded in it")]
+    /// A self-excited oscillator whose amplitude the equation determines, asked for in powers of
+    /// that amplitude.
+    #[error(
+        "the term `{term}` feeds or drains energy, so the amplitude is not free and nothing can be expanded in it"
+    )]
     AmplitudeNotFree {
         /// The term.
         term: Quotation,
@@ -160,7 +175,8 @@ pub enum Refusal {
     /// A limit cycle exists or may exist, but not in closed form.
     #[error("the amplitude of the limit cycle follows from `{equation} = 0`, {reason}")]
     LimitCycle {
-        /// The polynomial in z = amplitude^2 whose root is needed; `z_` where the equation has a z of its own.
+        /// The polynomial in z = amplitude^2 whose root is needed; `z_` where the equation has a z
+        /// of its own.
         equation: Polynomial,
         /// Why that is not possible.
         reason: &'static str,
@@ -254,7 +270,9 @@ pub enum Unsuited {
     #[error("measures the amplitude as {} = x(0)", AMPLITUDE)]
     Convention,
     /// A term that depends on time, but is no single wave.
-    #[error("takes drives such as F*cos(Omega*t) and h*x*cos(Omega*t), but `{term}` is no such wave, periodic in time")]
+    #[error(
+        "takes drives such as F*cos(Omega*t) and h*x*cos(Omega*t), but `{term}` is no such wave, periodic in time"
+    )]
     NoWave {
         /// The term.
         term: Quotation,
@@ -339,8 +357,11 @@ pub enum Unsuited {
         /// The equilibrium.
         position: Expr,
     },
-    /// Inertia that grows beyond all bounds towards the equilibrium, or has no value there: no motion passes it.
-    #[error("needs inertia that has a value at the equilibrium, but with the term `{term}` it has none")]
+    /// Inertia that grows beyond all bounds towards the equilibrium, or has no value there: no
+    /// motion passes it.
+    #[error(
+        "needs inertia that has a value at the equilibrium, but with the term `{term}` it has none"
+    )]
     NoInertiaAtRest {
         /// The inertia term.
         term: Quotation,
@@ -363,7 +384,8 @@ pub enum Unsuited {
         /// The force.
         term: Quotation,
     },
-    /// An order in the amplitude below that at which anything holds a motion that is damped or driven.
+    /// An order in the amplitude below that at which anything holds a motion that is damped or
+    /// driven.
     #[error(
         "needs order {lowest} in the amplitude here: below it no damping, no detuning and no nonlinear term holds the motion"
     )]
@@ -409,7 +431,11 @@ pub enum Unsuited {
 
 /// Whether a function in a term depends on a coordinate and its velocity both.
 fn turns_with_both(term: &Expr) -> bool {
-    let both = |part: &Expr| part.symbols().iter().any(|name| part.contains(name.derivative()));
+    let both = |part: &Expr| {
+        part.symbols()
+            .iter()
+            .any(|name| part.contains(name.derivative()))
+    };
     term.unique_nodes()
         .any(|part| matches!(part.node(), Node::Function(..)) && both(part))
 }
@@ -448,7 +474,8 @@ impl Unsuited {
     pub(super) fn damping(term: Quotation) -> Self {
         // What stands as a product with a sum in it may do both.
         let written_out = term.expression().expand();
-        let feeds = written_out.is_ok_and(|written| written.terms().len() == 1 && written.has_leading_minus());
+        let feeds = written_out
+            .is_ok_and(|written| written.terms().len() == 1 && written.has_leading_minus());
         Self::Damping { term, feeds }
     }
 
@@ -459,7 +486,10 @@ impl Unsuited {
 
     /// The refusal of a method or a part of one.
     pub fn by(self, refuser: Refuser) -> Refusal {
-        Refusal::Unsuited { refuser, reason: self }
+        Refusal::Unsuited {
+            refuser,
+            reason: self,
+        }
     }
 
     fn help(&self, refuser: Refuser) -> Advice {
@@ -552,7 +582,9 @@ impl Refusal {
     /// The message without the name of the method at its head, for lists that name it already.
     pub fn reason(&self, method: Method) -> String {
         match self {
-            Self::Unsuited { refuser, reason } if *refuser == Refuser::Method(method) => reason.to_string(),
+            Self::Unsuited { refuser, reason } if *refuser == Refuser::Method(method) => {
+                reason.to_string()
+            }
             other => other.to_string(),
         }
     }
@@ -656,8 +688,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         return Err(Refusal::NameOfAnswer(name.apart()));
     }
     let _letters = oscillator.letters().in_force();
-    let solution =
-        solve_as_asked(oscillator, options).map_err(|refusal| without_linear_force(refusal, oscillator, options))?;
+    let solution = solve_as_asked(oscillator, options)
+        .map_err(|refusal| without_linear_force(refusal, oscillator, options))?;
     let phase = oscillator.phase();
     Ok(Solution {
         derivation: solution
@@ -670,14 +702,19 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     })
 }
 
-/// Where `x = 0` pushes away the stable equilibria are named. Methods that need no linear force take no damping and no drive: where there is one the way leads on to numbers.
+/// Where `x = 0` pushes away the stable equilibria are named. Methods that need no linear force
+/// take no damping and no drive: where there is one the way leads on to numbers.
 fn without_linear_force(refusal: Refusal, oscillator: &Oscillator, options: &Options) -> Refusal {
     let Refusal::Oscillator(OscillatorError::NoRestoringForce(force)) = &refusal else {
         return refusal;
     };
     let asked = oscillator.about.is_some();
     // Two wells, say: with positive letters it pushes away here, and back elsewhere.
-    if let (true, false, Some(unstable)) = (force.has_leading_minus(), asked, stable_elsewhere(oscillator)) {
+    if let (true, false, Some(unstable)) = (
+        force.has_leading_minus(),
+        asked,
+        stable_elsewhere(oscillator),
+    ) {
         return unstable.into();
     }
     if let (true, Ok(centred)) = (asked && !force.is_zero(), centred(oscillator, None))
@@ -734,7 +771,10 @@ fn solve_as_asked(oscillator: &Oscillator, options: &Options) -> Result<Solution
 }
 
 /// Solves without another coordinate in view.
-fn solve_in_its_coordinate(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+fn solve_in_its_coordinate(
+    oscillator: &Oscillator,
+    options: &Options,
+) -> Result<Solution, Refusal> {
     let limit = match options.frequency_alone {
         true => HIGHEST_ORDER_OF_FREQUENCY,
         false => HIGHEST_ORDER,
@@ -765,10 +805,15 @@ fn solve_in_its_coordinate(oscillator: &Oscillator, options: &Options) -> Result
 }
 
 /// Solves by one method.
-fn solve_by(method: Method, oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
+fn solve_by(
+    method: Method,
+    oscillator: &Oscillator,
+    options: &Options,
+) -> Result<Solution, Refusal> {
     let entry = Entry::of(method);
     refuse_what_it_does_not_take(entry, options)?;
-    // Every method works about x = 0: the equation is seen from its equilibrium, and the answer moved back.
+    // Every method works about x = 0: the equation is seen from its equilibrium, and the answer
+    // moved back.
     let polynomial = oscillator.polynomial_degree()?.is_some();
     // The formulas of a driven motion have a letter for an equilibrium that is no fraction.
     let driven = oscillator.force.contains(Symbol::new("t"));
@@ -780,16 +825,23 @@ fn solve_by(method: Method, oscillator: &Oscillator, options: &Options) -> Resul
         Ok(None) => (entry.solve)(&centred.oscillator, options),
         Err(refusal) => Err(refusal),
     };
-    let mut solution = answer.map_err(|refusal| quotation::as_typed(refusal, oscillator, &centred))?;
-    // The first order of a force that is no polynomial projects the force as it is, corners and all.
+    let mut solution =
+        answer.map_err(|refusal| quotation::as_typed(refusal, oscillator, &centred))?;
+    // The first order of a force that is no polynomial projects the force as it is, corners and
+    // all.
     let projected = method == Method::LindstedtPoincare && solution.law.frequency().is_none();
     if entry.expands() && !projected && has_corners(&oscillator.force) {
         solution.validity.push(Note::Corners);
     }
     let mut sides = centred.sides.clone();
     if entry.expands() && !projected {
-        let (_, taken) = near_rest(&centred.oscillator.force, oscillator.coordinate).map_err(OscillatorError::from)?;
-        sides.extend(taken.into_iter().filter(|side| !centred.sides.contains(side)));
+        let (_, taken) = near_rest(&centred.oscillator.force, oscillator.coordinate)
+            .map_err(OscillatorError::from)?;
+        sides.extend(
+            taken
+                .into_iter()
+                .filter(|side| !centred.sides.contains(side)),
+        );
     }
     if !sides.is_empty() {
         solution.validity.push(Note::CornerSides(sides));
@@ -801,7 +853,10 @@ fn solve_by(method: Method, oscillator: &Oscillator, options: &Options) -> Resul
     }
     if let Some(motions) = &centred.cross_well {
         // A relation has no root that comes from an unstable rest.
-        solution.validity.iter_mut().for_each(Note::take_root_of_first_order);
+        solution
+            .validity
+            .iter_mut()
+            .for_each(Note::take_root_of_first_order);
         solution.validity.push(Note::CrossWell(motions.clone()));
     }
     if centred.position.is_zero() {
@@ -809,7 +864,10 @@ fn solve_by(method: Method, oscillator: &Oscillator, options: &Options) -> Resul
         solution.equation = oscillator.equation();
         return Ok(solution);
     }
-    if let (Some(degree), true) = (degree, centred.numerical && !polynomial && entry.takes(Choice::Taylor)) {
+    if let (Some(degree), true) = (
+        degree,
+        centred.numerical && !polynomial && entry.takes(Choice::Taylor),
+    ) {
         solution.validity.push(Note::TaylorPolynomial { degree });
     }
     move_back(&mut solution, oscillator, &centred)?;
@@ -827,17 +885,22 @@ fn refuse_what_it_does_not_take(entry: &Entry, options: &Options) -> Result<(), 
         (Choice::Resonance, options.resonance.is_some()),
         (Choice::FrequencyAlone, options.frequency_alone),
     ];
-    match given.iter().find(|(choice, given)| *given && !entry.takes(*choice)) {
+    match given
+        .iter()
+        .find(|(choice, given)| *given && !entry.takes(*choice))
+    {
         Some(&(choice, _)) => Err(Unsuited::NoSuchChoice { choice }.to(entry.method)),
         None => Ok(()),
     }
 }
 
-/// A parameter that moves the equilibrium is no small one, unless it is asked for: the amplitude is.
+/// A parameter that moves the equilibrium is no small one, unless it is asked for: the amplitude
+/// is.
 fn about_a_load(centred: &Centred, options: &Options) -> Options {
     let small = centred.oscillator.small_parameter(options.small.as_deref());
     let moves = |name: Symbol| centred.position.contains(name);
-    let amplitude = options.small.is_none() && matches!(small, Ok(SmallParameter::Parameter(name)) if moves(name));
+    let amplitude = options.small.is_none()
+        && matches!(small, Ok(SmallParameter::Parameter(name)) if moves(name));
     Options {
         small: if amplitude {
             Some(AMPLITUDE.to_string())
@@ -849,7 +912,11 @@ fn about_a_load(centred: &Centred, options: &Options) -> Options {
 }
 
 /// Adds the equilibrium to an answer about zero.
-fn move_back(solution: &mut Solution, oscillator: &Oscillator, centred: &Centred) -> Result<(), Refusal> {
+fn move_back(
+    solution: &mut Solution,
+    oscillator: &Oscillator,
+    centred: &Centred,
+) -> Result<(), Refusal> {
     let x = oscillator.coordinate;
     let written = centred.written.to_polynomial(&mut |_| None)?;
     // What is no polynomial has a symbol.
@@ -858,7 +925,10 @@ fn move_back(solution: &mut Solution, oscillator: &Oscillator, centred: &Centred
     if !solution.displacement.is_zero() {
         let position = FourierSeries::constant(POLYNOMIALS, position);
         solution.displacement = solution.displacement.sum(&position);
-        let motion = solution.modulation.as_mut().and_then(|slow| slow.motion.as_mut());
+        let motion = solution
+            .modulation
+            .as_mut()
+            .and_then(|slow| slow.motion.as_mut());
         if let Some(motion) = motion {
             *motion = motion.sum(&position);
         }
@@ -895,14 +965,17 @@ fn move_back(solution: &mut Solution, oscillator: &Oscillator, centred: &Centred
 fn has_corners(force: &Expr) -> bool {
     use crate::expr::Function::{Absolute, Maximum, Minimum, Sign, Step};
     let corners = [Absolute, Maximum, Minimum, Sign, Step];
-    corners.into_iter().any(|function| force.contains_function(function))
+    corners
+        .into_iter()
+        .any(|function| force.contains_function(function))
 }
 
 /// The refusal of a force that is no polynomial in the coordinate, by the terms that are none.
 fn not_polynomial(force: &Expr, coordinate: Symbol) -> Unsuited {
     let constant = fresh("c", &[coordinate]);
     let is_none = |term: &Expr, constants: bool| {
-        let mut name = |factor: &Expr| (constants && !factor.contains(coordinate)).then_some(constant);
+        let mut name =
+            |factor: &Expr| (constants && !factor.contains(coordinate)).then_some(constant);
         match term.to_polynomial(&mut name) {
             Ok(Some(polynomial)) => polynomial
                 .exponent_range(coordinate)
@@ -913,7 +986,10 @@ fn not_polynomial(force: &Expr, coordinate: Symbol) -> Unsuited {
     let expanded = force.expand().unwrap_or_else(|_| force.clone());
     // A constant such as sqrt(k) is in the way of some methods, and named where nothing else is.
     let found = [true, false].map(|constants| {
-        let terms = expanded.terms().iter().filter(|term| is_none(term, constants));
+        let terms = expanded
+            .terms()
+            .iter()
+            .filter(|term| is_none(term, constants));
         Expr::sum(terms.cloned())
     });
     let term = found.iter().find(|terms| !terms.is_zero()).unwrap_or(force);

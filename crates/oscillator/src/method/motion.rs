@@ -4,8 +4,8 @@
 //! x(t) = x_e + sum_k (c_k cos(k omega t) + s_k sin(k omega t))
 //! ```
 //!
-//! In: an answer and values of its parameters and amplitude. Out: numbers for `omega`, `c_k`, `s_k`, whatever kind of law the
-//! answer has.
+//! In: an answer and values of its parameters and amplitude. Out: numbers for `omega`, `c_k`,
+//! `s_k`, whatever kind of law the answer has.
 
 use std::fmt;
 
@@ -18,8 +18,8 @@ use crate::solution::Solution;
 use crate::symbol::Symbol;
 use crate::values::Values;
 
-/// A periodic motion in numbers; the displacement contains the equilibrium. Time and displacement have the units of the
-/// equation.
+/// A periodic motion in numbers; the displacement contains the equilibrium. Time and displacement
+/// have the units of the equation.
 ///
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
@@ -68,22 +68,36 @@ impl fmt::Display for Motion {
         let coefficients = (0..=self.displacement.highest_harmonic()).flat_map(|k| {
             let part = |series: FourierSeries<Doubles>| series.mean().0;
             let cosine = part(self.displacement.cosine(k));
-            let sine = if k == 0 { 0.0 } else { part(self.displacement.sine(k)) };
+            let sine = if k == 0 {
+                0.0
+            } else {
+                part(self.displacement.sine(k))
+            };
             [(k, "cos", cosine), (k, "sin", sine)]
         });
         let coefficients: Vec<_> = coefficients.collect();
         let largest = coefficients
             .iter()
             .fold(0.0, |most: f64, entry| most.max(entry.2.abs()));
-        let felt = coefficients.into_iter().filter(|entry| entry.2.abs() > 1e-15 * largest);
+        let felt = coefficients
+            .into_iter()
+            .filter(|entry| entry.2.abs() > 1e-15 * largest);
         let written = felt.map(|(k, function, value)| {
             let value = significant(value, 6);
             match k {
                 0 => value,
-                _ => format!("{value}*{function}({}*t)", significant(k as f64 * self.frequency, 6)),
+                _ => format!(
+                    "{value}*{function}({}*t)",
+                    significant(k as f64 * self.frequency, 6)
+                ),
             }
         });
-        write!(formatter, "{}(t) = {}", self.coordinate, terms::sum(written))
+        write!(
+            formatter,
+            "{}(t) = {}",
+            self.coordinate,
+            terms::sum(written)
+        )
     }
 }
 
@@ -95,7 +109,9 @@ pub enum NoMotion {
     #[error("values are needed for: {}", .0.iter().map(|name| name.name()).collect::<Vec<_>>().join(", "))]
     Missing(Vec<Symbol>),
     /// The frequency of the formula is not positive, or is known without a motion.
-    #[error("the formula has no motion at these values: its frequency is not positive, or is all that it gives")]
+    #[error(
+        "the formula has no motion at these values: its frequency is not positive, or is all that it gives"
+    )]
     Unknown,
     /// The motion of a driven equation, which does not follow from its amplitude alone.
     #[error(
@@ -139,8 +155,8 @@ impl Solution {
         })
     }
 
-    /// The displacement at the time `t`, at these values of the parameters and the amplitude. For many times
-    /// [`Solution::motion_at`] does the work once.
+    /// The displacement at the time `t`, at these values of the parameters and the amplitude. For
+    /// many times [`Solution::motion_at`] does the work once.
     ///
     /// # Errors
     /// [`NoMotion`].

@@ -1,7 +1,8 @@
 //! omega and the motion of an answer at given numbers, whatever kind of law it has.
 //!
-//! Polynomials, implicit relations and closed forms are evaluated; a balance of harmonics, a law that is an integral, the
-//! exact motion and the choice of hbar in homotopy analysis are solved for.
+//! Polynomials, implicit relations and closed forms are evaluated; a balance of harmonics, a law
+//! that is an integral, the exact motion and the choice of hbar in homotopy analysis are solved
+//! for.
 
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
@@ -24,7 +25,8 @@ use crate::solution::{AmplitudeConvention, Branch, Counts, Method, Solution};
 use crate::symbol::Symbol;
 use crate::symbol::letters::{AMPLITUDE, FREQUENCY, of_frequency};
 
-/// The relative rounding error above which a closed form is set aside for the integral it stands for.
+/// The relative rounding error above which a closed form is set aside for the integral it stands
+/// for.
 const LOST_DIGITS: f64 = 1e-13;
 
 /// The relative rounding error of omega^2 from which on a formula is refused: its terms cancel.
@@ -36,7 +38,8 @@ const NO_DIGITS: f64 = 1e-6;
 pub struct Numbers {
     /// omega^2, of either sign.
     pub frequency_squared: f64,
-    /// How far rounding of the formula's coefficients may move omega^2, relatively; zero where omega^2 is solved for.
+    /// How far rounding of the formula's coefficients may move omega^2, relatively; zero where
+    /// omega^2 is solved for.
     pub rounding: f64,
     /// The motion in theta; `None` where the frequency is not real.
     pub motion: Option<FourierSeries<Doubles>>,
@@ -49,15 +52,16 @@ pub struct Numbers {
 /// The values with which the formulas of an answer are evaluated.
 #[derive(Clone, Debug)]
 pub struct SymbolValues {
-    /// Every symbol of the formulas that has a real value: parameters and amplitude, what was chosen, definitions, omega, pi.
-    /// Laws that are written for positive amplitudes have the size of a negative one here.
+    /// Every symbol of the formulas that has a real value: parameters and amplitude, what was
+    /// chosen, definitions, omega, pi. Laws that are written for positive amplitudes have the size
+    /// of a negative one here.
     pub values: Vec<(Symbol, f64)>,
     /// theta at `t = 0`: pi where the amplitude stands with its size instead of itself, else 0.
     pub phase: f64,
 }
 
-/// What the amplitudes that were asked for before have left for the next, all else being the same: a balance goes on from where it
-/// was, and what a force is at rest is found once.
+/// What the amplitudes that were asked for before have left for the next, all else being the same:
+/// a balance goes on from where it was, and what a force is at rest is found once.
 #[derive(Default)]
 pub struct Known {
     balance: balance::Continuation,
@@ -66,7 +70,12 @@ pub struct Known {
 
 impl Known {
     /// The force about the equilibrium of an answer; `None` where a symbol of it has no number.
-    fn force(&self, oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Force> {
+    fn force(
+        &self,
+        oscillator: &Oscillator,
+        solution: &Solution,
+        numbers: &BTreeMap<Symbol, f64>,
+    ) -> Option<Force> {
         let amplitude = amplitude_of(solution, numbers);
         let known = self.force.get_or_init(|| {
             let (force, coordinate) = (&oscillator.force, oscillator.coordinate);
@@ -80,13 +89,15 @@ impl Known {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoNumbers {
-    /// The branch of an implicit relation turns back or reaches zero before the amplitude asked for.
+    /// The branch of an implicit relation turns back or reaches zero before the amplitude asked
+    /// for.
     #[error("not real: the root that continues the linear frequency ends at {} = {}", AMPLITUDE, significant(*amplitude, 6))]
     BranchEnds {
         /// Where.
         amplitude: f64,
     },
-    /// About an unstable equilibrium no root of an implicit relation continues that of its first order.
+    /// About an unstable equilibrium no root of an implicit relation continues that of its first
+    /// order.
     #[error("not real: no root continues the frequency of order 1 at this amplitude")]
     NoneOfFirstOrder,
     /// omega^2 is not positive.
@@ -96,7 +107,10 @@ pub enum NoNumbers {
     #[error("not positive: {} <= 0", FREQUENCY)]
     NotPositive,
     /// The law is larger than any number.
-    #[error("{} is beyond the range of double precision, 1.8e308", of_frequency(law))]
+    #[error(
+        "{} is beyond the range of double precision, 1.8e308",
+        of_frequency(law)
+    )]
     LawBeyond {
         /// `omega^2` or `omega`.
         law: &'static str,
@@ -168,12 +182,16 @@ impl NoNumbers {
     pub fn is_not_real(&self) -> bool {
         matches!(
             self,
-            Self::BranchEnds { .. } | Self::NoneOfFirstOrder | Self::Undefined { .. } | Self::NotReal
+            Self::BranchEnds { .. }
+                | Self::NoneOfFirstOrder
+                | Self::Undefined { .. }
+                | Self::NotReal
         )
     }
 }
 
-/// omega^2 and the motion of `solution`, an answer for `oscillator`, with `numbers` for the parameters and the amplitude.
+/// omega^2 and the motion of `solution`, an answer for `oscillator`, with `numbers` for the
+/// parameters and the amplitude.
 ///
 /// # Errors
 /// [`NoNumbers`], in words for a user.
@@ -233,8 +251,8 @@ pub fn evaluate(
     })
 }
 
-/// omega^2 alone, without the motion where that costs more; where its terms cancel, with the digits that are left, so that
-/// its zeros can be looked for.
+/// omega^2 alone, without the motion where that costs more; where its terms cancel, with the digits
+/// that are left, so that its zeros can be looked for.
 ///
 /// # Errors
 /// As [`evaluate`].
@@ -257,7 +275,8 @@ pub fn frequency_squared_of(
     frequency_squared_along(oscillator, solution, numbers, &Known::default())
 }
 
-/// As [`frequency_squared_of`] for one amplitude after the other, all else being the same: a balance goes on from where it was.
+/// As [`frequency_squared_of`] for one amplitude after the other, all else being the same: a
+/// balance goes on from where it was.
 ///
 /// # Errors
 /// As [`evaluate`].
@@ -278,16 +297,19 @@ pub fn frequency_squared_along(
     }
 }
 
-/// The numbers with the amplitude that a formula measures: that of the first harmonic, where only `A = x(0) - equilibrium` is
-/// given, by the formula's own motion solved for it as a series of the same order.
+/// The numbers with the amplitude that a formula measures: that of the first harmonic, where only
+/// `A = x(0) - equilibrium` is given, by the formula's own motion solved for it as a series of the
+/// same order.
 fn in_own_amplitude(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> BTreeMap<Symbol, f64> {
     let mut numbers = numbers.clone();
-    let [initial, own] = [AmplitudeConvention::Initial, solution.amplitude].map(AmplitudeConvention::symbol);
+    let [initial, own] =
+        [AmplitudeConvention::Initial, solution.amplitude].map(AmplitudeConvention::symbol);
     if initial == own || numbers.contains_key(&own) || !numbers.contains_key(&initial) {
         return numbers;
     }
-    // What the motion has at its start beside the amplitude and the equilibrium, by the power of the amplitude and by the order:
-    // each is marked by the small parameters, or by the amplitude itself.
+    // What the motion has at its start beside the amplitude and the equilibrium, by the power of
+    // the amplitude and by the order: each is marked by the small parameters, or by the amplitude
+    // itself.
     let in_amplitude = solution.small_parameter == own;
     let one: Polynomial = Polynomial::symbol(own);
     let mut beside: BTreeMap<(i32, i32), Polynomial> = BTreeMap::new();
@@ -299,11 +321,15 @@ fn in_own_amplitude(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> BTr
             } else {
                 solution.order_of(monomial)
             };
-            let terms = beside.entry((power, order)).or_insert_with(Polynomial::zero);
+            let terms = beside
+                .entry((power, order))
+                .or_insert_with(Polynomial::zero);
             terms.add_term(monomial.without(own), -number.clone());
         }
     }
-    let value_of = |polynomial: &Polynomial| solution.evaluate(polynomial, &|name| numbers.get(&name).copied());
+    let value_of = |polynomial: &Polynomial| {
+        solution.evaluate(polynomial, &|name| numbers.get(&name).copied())
+    };
     let beside: Result<Vec<_>, Symbol> = beside
         .iter()
         .map(|(&(power, order), terms)| Ok((power, order, value_of(terms)?)))
@@ -315,14 +341,18 @@ fn in_own_amplitude(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> BTr
     numbers
 }
 
-/// `a` of `a = first + sum c d^k a^n`, of which `beside` are the `(n, k, c)`, as a series in `d` up to its power `order`, at `d = 1`.
-/// Every pass gets one more power right.
+/// `a` of `a = first + sum c d^k a^n`, of which `beside` are the `(n, k, c)`, as a series in `d` up
+/// to its power `order`, at `d = 1`. Every pass gets one more power right.
 fn solved_as_series(first: f64, beside: &[(i32, i32, f64)], order: u32) -> f64 {
     let mut series = vec![first];
     for pass in 1..=order as usize {
         let product = |one: &[f64], other: &[f64]| -> Vec<f64> {
             (0..=pass)
-                .map(|k| (0..=k).filter_map(|j| Some(one.get(j)? * other.get(k - j)?)).sum())
+                .map(|k| {
+                    (0..=k)
+                        .filter_map(|j| Some(one.get(j)? * other.get(k - j)?))
+                        .sum()
+                })
                 .collect()
         };
         let highest = beside.iter().map(|term| term.0).max().unwrap_or(0);
@@ -333,7 +363,9 @@ fn solved_as_series(first: f64, beside: &[(i32, i32, f64)], order: u32) -> f64 {
             raised = product(&raised, &series);
             for &(_, shift, factor) in beside.iter().filter(|term| term.0 == power) {
                 let shifted = next.iter_mut().skip(usize::try_from(shift).unwrap_or(0));
-                shifted.zip(&raised).for_each(|(sum, value)| *sum += factor * value);
+                shifted
+                    .zip(&raised)
+                    .for_each(|(sum, value)| *sum += factor * value);
             }
         }
         series = next;
@@ -362,7 +394,11 @@ fn balanced(
         let value = motion.cosine(k).mean().0;
         (name, if k == 0 { value - equilibrium } else { value })
     };
-    solution.balanced_harmonics().into_iter().map(valued).collect()
+    solution
+        .balanced_harmonics()
+        .into_iter()
+        .map(valued)
+        .collect()
 }
 
 fn contains(solution: &Solution, symbol: Symbol) -> bool {
@@ -393,7 +429,8 @@ pub fn law_takes_size(oscillator: &Oscillator, solution: &Solution) -> bool {
     by_size(solution) && (!is_exact(solution) || is_odd_equation(oscillator))
 }
 
-/// Whether the motion of an answer is written for the size of the amplitude; polynomials in the amplitude know its sign.
+/// Whether the motion of an answer is written for the size of the amplitude; polynomials in the
+/// amplitude know its sign.
 pub fn motion_takes_size(oscillator: &Oscillator, solution: &Solution) -> bool {
     by_size(solution) && !matches!(oscillator.polynomial_degree(), Ok(Some(_)))
 }
@@ -414,12 +451,17 @@ fn of_one_term(solution: &Solution) -> bool {
     by_size(solution) && !is_exact(solution) && solution.law.system().is_none()
 }
 
-/// The law that the frequency of an answer is taken from: `omega^2`, of which it is the root, or `omega`.
+/// The law that the frequency of an answer is taken from: `omega^2`, of which it is the root, or
+/// `omega`.
 pub fn law_name(solution: &Solution) -> &'static str {
-    // What is solved by numbers gives omega itself, but for the one-term laws, which are integrals for omega^2.
+    // What is solved by numbers gives omega itself, but for the one-term laws, which are integrals
+    // for omega^2.
     let by_integral = solution.law.quadrature().is_some() && solution.method != Method::Exact;
     match solution.law.closed_form() {
-        _ if solution.law.frequency_squared().is_some() || solution.law.relation().is_some() || by_integral => {
+        _ if solution.law.frequency_squared().is_some()
+            || solution.law.relation().is_some()
+            || by_integral =>
+        {
             "omega^2"
         }
         Some(form) if form.squared => "omega^2",
@@ -429,7 +471,10 @@ pub fn law_name(solution: &Solution) -> &'static str {
 
 /// The amplitude; one where the law is free of it and none is given.
 fn amplitude_of(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> f64 {
-    numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0)
+    numbers
+        .get(&solution.amplitude.symbol())
+        .copied()
+        .unwrap_or(1.0)
 }
 
 /// omega^2, and how far rounding of the formula may move it, relatively.
@@ -445,7 +490,9 @@ fn frequency_squared(
     }
     if is_exact(solution) {
         // The law itself says nothing of whether the motion comes back.
-        let force = known.force(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
+        let force = known
+            .force(oscillator, solution, numbers)
+            .ok_or(NoNumbers::NoValue)?;
         let start = amplitude_of(solution, numbers);
         let turns = force.turning_point(start);
         turns.map_err(|error| force.why_no_period(start, error))?;
@@ -453,7 +500,11 @@ fn frequency_squared(
     let sized = law_takes_size(oscillator, solution);
     let value_of = |name| {
         let value = numbers.get(&name).copied()?;
-        Some(if sized && name == symbol { value.abs() } else { value })
+        Some(if sized && name == symbol {
+            value.abs()
+        } else {
+            value
+        })
     };
     if solution.law.frequency_squared().is_none() && solution.law.relation().is_some() {
         return match solution.branch_at(&value_of) {
@@ -481,7 +532,10 @@ fn frequency_squared(
     }
     let undefined = || {
         let missing = solution.defined_values(&value_of).err()?;
-        let mut names = solution.definitions.iter().map(|definition| definition.symbol);
+        let mut names = solution
+            .definitions
+            .iter()
+            .map(|definition| definition.symbol);
         names.find(|name| *name == missing)
     };
     // What the exact motion is refused for is said rather than that its formula has no value.
@@ -500,14 +554,22 @@ fn frequency_squared(
 }
 
 /// The value of a symbol or of a definition, with its rounding error.
-fn rounded(solution: &Solution, name: Symbol, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<Rounded> {
+fn rounded(
+    solution: &Solution,
+    name: Symbol,
+    value_of: &dyn Fn(Symbol) -> Option<f64>,
+) -> Option<Rounded> {
     match value_of(name) {
         Some(value) => Some((value, 0.0)),
         None => match solution.definitions.iter().find(|own| own.symbol == name) {
             // One may use those before it.
-            Some(own) => own.meaning.evaluate_rounded(&|name| rounded(solution, name, value_of)),
+            Some(own) => own
+                .meaning
+                .evaluate_rounded(&|name| rounded(solution, name, value_of)),
             None => {
-                let value = solution.evaluate(&Polynomial::symbol(name), value_of).ok()?;
+                let value = solution
+                    .evaluate(&Polynomial::symbol(name), value_of)
+                    .ok()?;
                 Some((value, f64::EPSILON * value.abs()))
             }
         },
@@ -552,12 +614,17 @@ fn overflow(
     let amplitude = amplitude_of(solution, numbers);
     let found = |place: f64| {
         let term = force.overflow(place)?;
-        Some(PeriodError::Overflow { place, term }.moved(force.equilibrium()).into())
+        Some(
+            PeriodError::Overflow { place, term }
+                .moved(force.equilibrium())
+                .into(),
+        )
     };
     [amplitude, -amplitude].into_iter().find_map(found)
 }
 
-/// A law of one term by what defines it, without the differences of a closed form; with a bound of its error, relative.
+/// A law of one term by what defines it, without the differences of a closed form; with a bound of
+/// its error, relative.
 fn by_definition(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -572,7 +639,13 @@ fn by_definition(
     }
     let force = if is_first_order(solution) {
         let force = first_order::truncated(oscillator, solution.small_parameter)?;
-        Force::new(&force, oscillator.coordinate, &solution.equilibrium, numbers, size)?
+        Force::new(
+            &force,
+            oscillator.coordinate,
+            &solution.equilibrium,
+            numbers,
+            size,
+        )?
     } else {
         known.force(oscillator, solution, numbers)?
     };
@@ -580,9 +653,19 @@ fn by_definition(
     definition(&force, size).filter(|law| law.0.is_finite())
 }
 
-/// The relative error of the integral of a law of one term, as its quadrature estimates it; `None` for other laws.
-pub fn error_of_integral(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
-    let other = [Method::Exact, Method::HarmonicBalance, Method::EnergyBalance].contains(&solution.method);
+/// The relative error of the integral of a law of one term, as its quadrature estimates it; `None`
+/// for other laws.
+pub fn error_of_integral(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Option<f64> {
+    let other = [
+        Method::Exact,
+        Method::HarmonicBalance,
+        Method::EnergyBalance,
+    ]
+    .contains(&solution.method);
     if solution.law.quadrature().is_none() || other {
         return None;
     }
@@ -617,7 +700,11 @@ fn formula_motion(
             return Some(squared.sqrt());
         }
         let value = numbers.get(&symbol).copied()?;
-        Some(if turned && symbol == amplitude { -value } else { value })
+        Some(if turned && symbol == amplitude {
+            -value
+        } else {
+            value
+        })
     };
     let motion = solution.motion(&value).ok()?;
     if !turned {
@@ -627,15 +714,23 @@ fn formula_motion(
     if is_odd_equation(oscillator) {
         return Some(motion);
     }
-    // Every harmonic comes with a cos(theta) that lets the motion start at the amplitude; half a period later the even ones,
-    // which have kept their signs, need it with the other sign.
+    // Every harmonic comes with a cos(theta) that lets the motion start at the amplitude; half a
+    // period later the even ones, which have kept their signs, need it with the other sign.
     let start = solution.equilibrium.evaluate(numbers).ok()? + numbers.get(&amplitude)?;
     let missing = start - motion.evaluate(0.0);
-    Some(motion.sum(&FourierSeries::from_parts(Doubles, vec![0.0, missing], vec![])))
+    Some(motion.sum(&FourierSeries::from_parts(
+        Doubles,
+        vec![0.0, missing],
+        vec![],
+    )))
 }
 
 /// Whether the motion is that of the size of the amplitude, half a period later.
-fn is_turned(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> bool {
+fn is_turned(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> bool {
     let negative = numbers
         .get(&solution.amplitude.symbol())
         .is_some_and(|value| *value < 0.0);
@@ -647,7 +742,8 @@ pub fn half_a_period(k: usize, value: f64) -> f64 {
     if k % 2 == 1 { -value } else { value }
 }
 
-/// The values of all symbols that the formulas of an answer are written with, of which `found` are the numbers, if it has any.
+/// The values of all symbols that the formulas of an answer are written with, of which `found` are
+/// the numbers, if it has any.
 ///
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
@@ -679,7 +775,11 @@ pub fn symbol_values(
         .iter()
         .filter(|entry| solution.limit_cycle.is_none() || *entry.0 != amplitude);
     let mut values: Vec<(Symbol, f64)> = known.map(sized).collect();
-    values.extend(found.into_iter().flat_map(|found| found.chosen.iter().copied()));
+    values.extend(
+        found
+            .into_iter()
+            .flat_map(|found| found.chosen.iter().copied()),
+    );
     let squared = found.map(|found| found.frequency_squared);
     let lost = squared.and_then(|squared| lost_projections(oscillator, solution, numbers, squared));
     let lost: Vec<(Symbol, f64)> = lost
@@ -687,7 +787,14 @@ pub fn symbol_values(
         .flatten()
         .filter_map(|(k, value)| {
             let name = projection_name(solution, k)?;
-            Some((name, if turned { half_a_period(k, value) } else { value }))
+            Some((
+                name,
+                if turned {
+                    half_a_period(k, value)
+                } else {
+                    value
+                },
+            ))
         })
         .collect();
     // A definition may use those before it.
@@ -696,9 +803,21 @@ pub fn symbol_values(
         if values.iter().any(|entry| entry.0 == name) {
             continue;
         }
-        let by_definition = lost.iter().find(|entry| entry.0 == name).map(|entry| entry.1);
-        let value = by_definition.or_else(|| definition.meaning.evaluate(&values.iter().copied().collect()).ok());
-        values.extend(value.filter(|value| value.is_finite()).map(|value| (name, value)));
+        let by_definition = lost
+            .iter()
+            .find(|entry| entry.0 == name)
+            .map(|entry| entry.1);
+        let value = by_definition.or_else(|| {
+            definition
+                .meaning
+                .evaluate(&values.iter().copied().collect())
+                .ok()
+        });
+        values.extend(
+            value
+                .filter(|value| value.is_finite())
+                .map(|value| (name, value)),
+        );
     }
     values.extend(squared.map(|squared| (Symbol::new("omega"), squared.sqrt())));
     let pi = Symbol::new("pi");
@@ -721,16 +840,23 @@ fn projection_name(solution: &Solution, k: usize) -> Option<Symbol> {
         .harmonics()
         .into_iter()
         .find(|entry| entry.0 == k)?;
-    let alone = cosine.terms().filter_map(|(monomial, _)| match *monomial.factors() {
-        [(name, 1), (over, -2)] | [(over, -2), (name, 1)] if over == omega => Some(name),
-        _ => None,
+    let alone = cosine
+        .terms()
+        .filter_map(|(monomial, _)| match *monomial.factors() {
+            [(name, 1), (over, -2)] | [(over, -2), (name, 1)] if over == omega => Some(name),
+            _ => None,
+        });
+    let mut defined = alone.filter(|&name| {
+        solution
+            .definitions
+            .iter()
+            .any(|definition| definition.symbol == name)
     });
-    let mut defined = alone.filter(|&name| solution.definitions.iter().any(|definition| definition.symbol == name));
     defined.next()
 }
 
-/// `x_1 = A cos theta + sum c_k (cos k theta - cos theta)/((k^2 - 1) omega^2)` with the `c_k` by quadrature, where their closed
-/// forms have lost digits that show beside the amplitude.
+/// `x_1 = A cos theta + sum c_k (cos k theta - cos theta)/((k^2 - 1) omega^2)` with the `c_k` by
+/// quadrature, where their closed forms have lost digits that show beside the amplitude.
 fn iterate_by_definition(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -754,7 +880,8 @@ fn iterate_by_definition(
     finite.then(|| FourierSeries::from_parts(Doubles, cosine, vec![]))
 }
 
-/// The `c_k` of a first iterate by quadrature, where their closed forms have lost digits that show beside the amplitude.
+/// The `c_k` of a first iterate by quadrature, where their closed forms have lost digits that show
+/// beside the amplitude.
 fn lost_projections(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -773,7 +900,9 @@ fn lost_projections(
     let kept = solution.definitions.iter().all(|definition| {
         let value_of = |name| rounded(solution, name, &value_of);
         let found = definition.meaning.evaluate_rounded(&value_of);
-        found.is_some_and(|(value, error)| value.is_finite() && error <= LOST_DIGITS * squared * amplitude.abs())
+        found.is_some_and(|(value, error)| {
+            value.is_finite() && error <= LOST_DIGITS * squared * amplitude.abs()
+        })
     });
     if kept {
         return None;
@@ -808,17 +937,25 @@ fn solve(
         return found().ok_or(NoNumbers::NoValue);
     }
     if is_exact(solution) {
-        return exact_motion(oscillator, solution, numbers, known).map(|(squared, motion)| (squared, motion, None));
+        return exact_motion(oscillator, solution, numbers, known)
+            .map(|(squared, motion)| (squared, motion, None));
     }
     let given = || {
         let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
         let amplitude = *numbers.get(&solution.amplitude.symbol())?;
-        Some((equilibrium, amplitude, known.force(oscillator, solution, numbers)?))
+        Some((
+            equilibrium,
+            amplitude,
+            known.force(oscillator, solution, numbers)?,
+        ))
     };
     let (equilibrium, amplitude, force) = given().ok_or(NoNumbers::NoValue)?;
     let shift = FourierSeries::constant(Doubles, equilibrium);
     if Entry::of(solution.method).motion == Motion::Balance {
-        let odd = solution.balanced_harmonics().iter().all(|entry| entry.0 % 2 == 1);
+        let odd = solution
+            .balanced_harmonics()
+            .iter()
+            .all(|entry| entry.0 % 2 == 1);
         let harmonics = harmonic_balance::harmonics(solution.order, odd);
         let degree = oscillator.polynomial_degree().ok().flatten();
         let found = balance::balance(&force, degree, &harmonics, amplitude, &known.balance)?;
@@ -834,7 +971,8 @@ fn solve(
         return Ok((found.frequency_squared, found.motion.sum(&shift), remark));
     }
     stays_defined(oscillator, solution, numbers, known)?;
-    let (squared, error) = by_definition(oscillator, solution, numbers, known).ok_or(NoNumbers::NoValue)?;
+    let (squared, error) =
+        by_definition(oscillator, solution, numbers, known).ok_or(NoNumbers::NoValue)?;
     if error > NO_DIGITS {
         return Err(NoNumbers::Integral { error });
     }
@@ -849,7 +987,9 @@ fn exact_motion(
     numbers: &BTreeMap<Symbol, f64>,
     known: &Known,
 ) -> Result<(f64, FourierSeries<Doubles>), NoNumbers> {
-    let force = known.force(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
+    let force = known
+        .force(oscillator, solution, numbers)
+        .ok_or(NoNumbers::NoValue)?;
     let start = amplitude_of(solution, numbers);
     let found = motion_about(&force, start);
     let (period, cosine) = found.map_err(|error| force.why_no_period(start, error))?;
@@ -864,20 +1004,36 @@ fn exact_motion(
 }
 
 /// The coefficients of `cos(k theta)` of a motion in closed form; `None` where it has no value.
-fn along(solution: &Solution, motion: &Expr, numbers: &BTreeMap<Symbol, f64>, frequency: f64) -> Option<Vec<f64>> {
+fn along(
+    solution: &Solution,
+    motion: &Expr,
+    numbers: &BTreeMap<Symbol, f64>,
+    frequency: f64,
+) -> Option<Vec<f64>> {
     let mut values = numbers.clone();
-    values.extend(solution.defined_values(&|name| numbers.get(&name).copied()).ok()?);
+    values.extend(
+        solution
+            .defined_values(&|name| numbers.get(&name).copied())
+            .ok()?,
+    );
     let time = Symbol::new("t");
-    let names: Vec<Symbol> = std::iter::once(time).chain(values.keys().copied()).collect();
+    let names: Vec<Symbol> = std::iter::once(time)
+        .chain(values.keys().copied())
+        .collect();
     let function = CompiledFunction::new(motion, &names).ok()?;
-    let arguments: Vec<f64> = std::iter::once(0.0).chain(values.values().copied()).collect();
+    let arguments: Vec<f64> = std::iter::once(0.0)
+        .chain(values.values().copied())
+        .collect();
     let place = |theta: f64| {
         let mut arguments = arguments.clone();
         arguments[0] = theta / frequency;
         function.call(&arguments)
     };
     let cosine = cosines(&place);
-    cosine.iter().all(|value| value.is_finite()).then_some(cosine)
+    cosine
+        .iter()
+        .all(|value| value.is_finite())
+        .then_some(cosine)
 }
 
 /// The hbar between -2 and 0 at which the squared residual of the original equation is least.
@@ -890,7 +1046,9 @@ fn best_hbar(
 ) -> Result<f64, NoNumbers> {
     const TRIALS: usize = 40;
     const SAMPLES: usize = 64;
-    let force = known.force(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
+    let force = known
+        .force(oscillator, solution, numbers)
+        .ok_or(NoNumbers::NoValue)?;
     // What does not depend on hbar is computed once.
     let mut numbers = numbers.clone();
     let fixed = solution
@@ -901,9 +1059,13 @@ fn best_hbar(
         // Without a first frequency there is none for any hbar.
         let undefined = |error| match error {
             EvaluationError::MissingSymbol(_) => NoNumbers::NoValue,
-            EvaluationError::Undefined { .. } if definition.meaning.overflow(&numbers).is_some() => NoNumbers::Beyond {
-                name: definition.symbol,
-            },
+            EvaluationError::Undefined { .. }
+                if definition.meaning.overflow(&numbers).is_some() =>
+            {
+                NoNumbers::Beyond {
+                    name: definition.symbol,
+                }
+            }
             EvaluationError::Undefined { .. } => NoNumbers::Undefined {
                 name: definition.symbol,
             },
@@ -918,7 +1080,8 @@ fn best_hbar(
     let squared_residual = |value: f64| {
         let mut numbers = numbers.clone();
         numbers.insert(hbar, value);
-        let squared = frequency_squared(oscillator, solution, &numbers, known).map_or(f64::NAN, |found| found.0);
+        let squared = frequency_squared(oscillator, solution, &numbers, known)
+            .map_or(f64::NAN, |found| found.0);
         let Some(motion) = formula_motion(oscillator, solution, &numbers, squared) else {
             return f64::INFINITY;
         };
@@ -931,7 +1094,8 @@ fn best_hbar(
         if sum.is_finite() { sum } else { f64::INFINITY }
     };
     let place = |k: usize| -2.0 * k as f64 / TRIALS as f64;
-    let best = (1..=TRIALS).min_by(|&a, &b| squared_residual(place(a)).total_cmp(&squared_residual(place(b))));
+    let best = (1..=TRIALS)
+        .min_by(|&a, &b| squared_residual(place(a)).total_cmp(&squared_residual(place(b))));
     let best = best.ok_or(NoNumbers::NoValue)?;
     let (value, least) = find_minimum(squared_residual, place(best + 1), place(best - 1));
     least.is_finite().then_some(value).ok_or(NoNumbers::NoValue)

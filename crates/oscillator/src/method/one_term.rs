@@ -1,7 +1,8 @@
 //! The motion of one term, `x = A cos(theta)`: what the classical frequency formulas share.
 //!
-//! References: R. E. Mickens, *Truly Nonlinear Oscillations*, World Scientific 2010, chapter 3; N. Krylov, N. Bogoliubov,
-//! *Introduction to Non-Linear Mechanics*, Princeton 1943 (equivalent linearisation).
+//! References: R. E. Mickens, *Truly Nonlinear Oscillations*, World Scientific 2010, chapter 3; N.
+//! Krylov, N. Bogoliubov, *Introduction to Non-Linear Mechanics*, Princeton 1943 (equivalent
+//! linearisation).
 //!
 //! ```text
 //! x'' + f(x) = 0,   x = A cos(theta),   theta = omega t
@@ -9,7 +10,8 @@
 //! omega^2 = c_1/A = (2/(pi A)) int_0^pi f(A cos theta) cos(theta) dtheta
 //! ```
 //!
-//! Even terms of the force contribute nothing to `c_1`: the drift they cause is left out, and the answer says so.
+//! Even terms of the force contribute nothing to `c_1`: the drift they cause is left out, and the
+//! answer says so.
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -25,14 +27,21 @@ use crate::expr::{CompiledFunction, Expr, ExprError};
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_piecewise};
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Note, Solution, note::FirstStep};
+use crate::solution::{
+    AmplitudeConvention, ClosedForm, Law, Method, Note, Solution, note::FirstStep,
+};
 use crate::symbol::Symbol;
 
 /// The force of an oscillator that is conservative: no damping, forcing or velocities.
 ///
 /// # Errors
-/// The term in the way, by name; or an amplitude of the first harmonic, which these methods do not use.
-pub(super) fn conservative_force(oscillator: &Oscillator, options: &Options, method: Method) -> Result<Expr, Refusal> {
+/// The term in the way, by name; or an amplitude of the first harmonic, which these methods do not
+/// use.
+pub(super) fn conservative_force(
+    oscillator: &Oscillator,
+    options: &Options,
+    method: Method,
+) -> Result<Expr, Refusal> {
     let parts = oscillator.parts()?;
     if !parts.forcing.is_zero() {
         let term = first_term(&parts.forcing);
@@ -61,7 +70,11 @@ pub(super) fn conservative_force(oscillator: &Oscillator, options: &Options, met
 }
 
 /// Refuses a force that is not odd, by its first even term.
-pub(super) fn require_odd(oscillator: &Oscillator, force: &Expr, method: Method) -> Result<(), Refusal> {
+pub(super) fn require_odd(
+    oscillator: &Oscillator,
+    force: &Expr,
+    method: Method,
+) -> Result<(), Refusal> {
     if is_odd(force, oscillator.coordinate)? {
         return Ok(());
     }
@@ -85,7 +98,12 @@ pub(super) fn even_part(oscillator: &Oscillator, force: &Expr) -> Result<Expr, R
 }
 
 /// An answer with the one-term motion and no law yet.
-pub(super) fn unsolved(oscillator: &Oscillator, options: &Options, method: Method, order: u32) -> Solution {
+pub(super) fn unsolved(
+    oscillator: &Oscillator,
+    options: &Options,
+    method: Method,
+    order: u32,
+) -> Solution {
     let amplitude = Symbol::new("A");
     let small = match oscillator.small_parameter(options.small.as_deref()) {
         Ok(SmallParameter::Parameter(name)) => name,
@@ -121,7 +139,8 @@ pub(super) fn cosine(coefficient: Polynomial) -> FourierSeries<Polynomials> {
     FourierSeries::cos(POLYNOMIALS, 1).product(&FourierSeries::constant(POLYNOMIALS, coefficient))
 }
 
-/// Puts a law for omega^2 into an answer: as a polynomial where it is one, as a closed form otherwise.
+/// Puts a law for omega^2 into an answer: as a polynomial where it is one, as a closed form
+/// otherwise.
 pub(super) fn set_law(solution: &mut Solution, law: &Expr) -> Result<(), Refusal> {
     solution.law = match law.to_polynomial(&mut |_| None)? {
         Some(polynomial) => Law::squared(polynomial),
@@ -137,7 +156,13 @@ pub(super) fn set_law(solution: &mut Solution, law: &Expr) -> Result<(), Refusal
 pub(super) fn shared_integral(oscillator: &Oscillator, force: &Expr) -> Option<Expr> {
     let amplitude = Expr::symbol("A");
     let first = cosine_coefficient(force, oscillator.coordinate, &amplitude, 1)?;
-    Some(Expr::divide(&first, &amplitude).ok()?.expand().ok()?.factored())
+    Some(
+        Expr::divide(&first, &amplitude)
+            .ok()?
+            .expand()
+            .ok()?
+            .factored(),
+    )
 }
 
 /// The answer of the methods whose law is the shared integral.
@@ -159,16 +184,25 @@ pub(super) fn solve_by_integral(
             solution.law = Law::Quadrature(vec![Line::equation(squared, integral)]);
         }
     }
-    solution.validity.push(Note::FirstStep(FirstStep::TermOfForce));
+    solution
+        .validity
+        .push(Note::FirstStep(FirstStep::TermOfForce));
     note_even_part(&mut solution, oscillator, &force)?;
-    solution.derivation = vec![Line::equation(oscillator.coordinate, solution.displacement.clone())];
+    solution.derivation = vec![Line::equation(
+        oscillator.coordinate,
+        solution.displacement.clone(),
+    )];
     let law = integral_law(oscillator, &force, &solution)?;
     solution.derivation.extend(law);
     Ok(solution)
 }
 
 /// Says which part of the force a motion of one term leaves out.
-pub(super) fn note_even_part(solution: &mut Solution, oscillator: &Oscillator, force: &Expr) -> Result<(), Refusal> {
+pub(super) fn note_even_part(
+    solution: &mut Solution,
+    oscillator: &Oscillator,
+    force: &Expr,
+) -> Result<(), Refusal> {
     let even = even_part(oscillator, force)?;
     if !even.is_zero() {
         solution.validity.push(Note::EvenPartLeftOut(even));
@@ -185,7 +219,10 @@ pub(super) fn note_even_part_last(solution: &mut Solution) {
 }
 
 /// `(2/(pi A)) int_0^pi f(A cos theta) cos(theta) dtheta`, written out.
-pub(super) fn first_projection(oscillator: &Oscillator, force: &Expr) -> Result<Formula, ExprError> {
+pub(super) fn first_projection(
+    oscillator: &Oscillator,
+    force: &Expr,
+) -> Result<Formula, ExprError> {
     let (amplitude, cosine) = (Expr::symbol("A"), Expr::from(oscillator.phase()).cos()?);
     let along = force.substitute(oscillator.coordinate, &(&amplitude * &cosine))?;
     Ok(Formula::Integral {
@@ -197,12 +234,19 @@ pub(super) fn first_projection(oscillator: &Oscillator, force: &Expr) -> Result<
     })
 }
 
-/// The condition that the force along the motion has no more of `cos(theta)` than the acceleration, and what it gives.
-pub(super) fn integral_law(oscillator: &Oscillator, force: &Expr, solution: &Solution) -> Result<Vec<Line>, Refusal> {
+/// The condition that the force along the motion has no more of `cos(theta)` than the acceleration,
+/// and what it gives.
+pub(super) fn integral_law(
+    oscillator: &Oscillator,
+    force: &Expr,
+    solution: &Solution,
+) -> Result<Vec<Line>, Refusal> {
     let squared = Expr::symbol("omega").integer_power(2)?;
     let mut equal = vec![squared.into(), first_projection(oscillator, force)?];
     equal.extend(law_of(solution).map(Formula::from));
-    Ok(vec![Line::equal(equal).because("no cos(θ) remains in the equation")])
+    Ok(vec![
+        Line::equal(equal).because("no cos(θ) remains in the equation"),
+    ])
 }
 
 /// omega^2 of an answer that has it as a polynomial or in closed form.
@@ -214,18 +258,25 @@ pub(super) fn law_of(solution: &Solution) -> Option<Expr> {
     })
 }
 
-/// `c_1/A` of a force by numbers, with a bound of its error, relative: what defines the methods whose law is the shared integral.
+/// `c_1/A` of a force by numbers, with a bound of its error, relative: what defines the methods
+/// whose law is the shared integral.
 pub(super) fn first_projection_over_amplitude(force: &Force, amplitude: f64) -> Option<(f64, f64)> {
     let (projection, error) = coefficient(force, amplitude, 1);
     Some((projection / amplitude, error / projection.abs()))
 }
 
-/// `c_k` of a force by numbers, and the change at the last doubling of the points, which bounds its error: the midpoint
-/// rule in theta, which converges geometrically for smooth forces and like a power at corners.
-pub(crate) fn coefficient_by_quadrature(force: &dyn Fn(f64) -> f64, amplitude: f64, k: usize) -> (f64, f64) {
+/// `c_k` of a force by numbers, and the change at the last doubling of the points, which bounds its
+/// error: the midpoint rule in theta, which converges geometrically for smooth forces and like a
+/// power at corners.
+pub(crate) fn coefficient_by_quadrature(
+    force: &dyn Fn(f64) -> f64,
+    amplitude: f64,
+    k: usize,
+) -> (f64, f64) {
     const FEWEST: usize = 64;
     const MOST: usize = 1 << 14;
-    // The sum, and the size of what is added up: rounding leaves an error of that size times epsilon.
+    // The sum, and the size of what is added up: rounding leaves an error of that size times
+    // epsilon.
     let with_points = |points: usize| {
         let value = |i: usize| {
             let theta = PI * (i as f64 + 0.5) / points as f64;
@@ -233,7 +284,9 @@ pub(crate) fn coefficient_by_quadrature(force: &dyn Fn(f64) -> f64, amplitude: f
         };
         let sums = (0..points)
             .map(value)
-            .fold((0.0, 0.0), |(sum, size), value| (sum + value, size + value.abs()));
+            .fold((0.0, 0.0), |(sum, size), value| {
+                (sum + value, size + value.abs())
+            });
         (2.0 / points as f64 * sums.0, 2.0 / points as f64 * sums.1)
     };
     let (mut value, mut points) = (with_points(FEWEST).0, 2 * FEWEST);
@@ -248,8 +301,8 @@ pub(crate) fn coefficient_by_quadrature(force: &dyn Fn(f64) -> f64, amplitude: f
     }
 }
 
-/// `c_k` of a force about its equilibrium, and a bound of its error: between corners and narrow places by Gauss's rule, as
-/// fine as it has to be, where there are any.
+/// `c_k` of a force about its equilibrium, and a bound of its error: between corners and narrow
+/// places by Gauss's rule, as fine as it has to be, where there are any.
 pub(crate) fn coefficient(force: &Force, amplitude: f64, k: usize) -> (f64, f64) {
     const TOLERANCE: f64 = 1e-14;
     let cuts = force.cuts(-amplitude.abs(), amplitude.abs());
@@ -266,7 +319,9 @@ pub(crate) fn coefficient(force: &Force, amplitude: f64, k: usize) -> (f64, f64)
     let sum = match integrate_piecewise(integrand, &angles, TOLERANCE) {
         Ok(found) => found,
         Err(QuadratureError::NotConverged {
-            value, error_estimate, ..
+            value,
+            error_estimate,
+            ..
         }) => (value, error_estimate),
         Err(_) => (f64::NAN, f64::NAN),
     };
@@ -283,7 +338,9 @@ pub(crate) fn compiled(
         .chain(numbers.keys().copied())
         .collect();
     let function = CompiledFunction::new(force, &names).ok()?;
-    let arguments: Vec<f64> = std::iter::once(0.0).chain(numbers.values().copied()).collect();
+    let arguments: Vec<f64> = std::iter::once(0.0)
+        .chain(numbers.values().copied())
+        .collect();
     // One row of arguments for all calls: only its first entry, the position, changes.
     let arguments = std::cell::RefCell::new(arguments);
     Some(move |x: f64| {

@@ -1,6 +1,7 @@
 //! Pade approximants of omega^2: quotients of polynomials that agree with the exact series.
 //!
-//! Reference: G. A. Baker, P. Graves-Morris, *Pade Approximants*, 2nd ed., Cambridge 1996, section 1.1.
+//! Reference: G. A. Baker, P. Graves-Morris, *Pade Approximants*, 2nd ed., Cambridge 1996,
+//! section 1.1.
 //!
 //! ```text
 //! omega^2 = c_0 + c_1 s + c_2 s^2 + ...,   s = A^2, or the small parameter
@@ -8,9 +9,10 @@
 //! sum_j q_j c_(L+k-j) = 0, k = 1..M    (q_0 = 1)      ,       p_i = sum_j q_j c_(i-j)
 //! ```
 //!
-//! `L = M + 1` suits a hardening spring, whose omega^2 grows like s; `L = M` one that saturates. The coefficients are those
-//! of [Lindstedt and Poincare](super::lindstedt_poincare), exact. High degrees are worked out
-//! [modulo many primes](crate::series::hermite_pade::by_primes), from the frequency alone.
+//! `L = M + 1` suits a hardening spring, whose omega^2 grows like s; `L = M` one that saturates.
+//! The coefficients are those of [Lindstedt and Poincare](super::lindstedt_poincare), exact. High
+//! degrees are worked out [modulo many primes](crate::series::hermite_pade::by_primes), from the
+//! frequency alone.
 //!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
@@ -47,8 +49,8 @@ const LARGEST_DEGREE: u32 = 60;
 /// Beyond this degree of the denominator fractions are long, and primes faster.
 const LARGEST_BY_FRACTIONS: usize = 12;
 
-/// The largest degree of a denominator whose symbols cannot be scaled away: its cofactors are sums of `2^degree` products of
-/// polynomials.
+/// The largest degree of a denominator whose symbols cannot be scaled away: its cofactors are sums
+/// of `2^degree` products of polynomials.
 const LARGEST_WITH_SYMBOLS: usize = 9;
 
 /// The approximant of the degrees in the options, `[2/1]` by default.
@@ -69,11 +71,15 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         return Err(refused("degrees go up to [60/60]"));
     }
     let order = numerator_degree + denominator_degree;
-    let resummed = Resummed::of(oscillator, options, (METHOD, order))?.ok_or_else(|| refused(STOPPED))?;
+    let resummed =
+        Resummed::of(oscillator, options, (METHOD, order))?.ok_or_else(|| refused(STOPPED))?;
     let series = &resummed.series;
     let quotient = quotient(series, (numerator_degree, denominator_degree)).map_err(refused)?;
     let below = series.with_powers(&quotient.below);
-    let value = Expr::divide(&Expr::from(&series.with_powers(&quotient.above)), &Expr::from(&below))?;
+    let value = Expr::divide(
+        &Expr::from(&series.with_powers(&quotient.above)),
+        &Expr::from(&below),
+    )?;
     if !has_values(&value) {
         return Err(refused(TOO_LONG));
     }
@@ -105,11 +111,18 @@ fn quotient(
     (numerator_degree, denominator_degree): (u32, u32),
 ) -> Result<Quotient, &'static str> {
     let (l, m) = (i64::from(numerator_degree), denominator_degree as usize);
-    let coefficients: Vec<Polynomial> = (0..=l + m as i64).map(|power| series.coefficient(power)).collect();
+    let coefficients: Vec<Polynomial> = (0..=l + m as i64)
+        .map(|power| series.coefficient(power))
+        .collect();
     if m > LARGEST_BY_FRACTIONS
         && let Some((unit, numbers)) = scaled(&coefficients)
     {
-        return by_primes(&coefficients[0], &unit, numbers, (numerator_degree as usize, m));
+        return by_primes(
+            &coefficients[0],
+            &unit,
+            numbers,
+            (numerator_degree as usize, m),
+        );
     }
     let below = denominator(&coefficients, l, m)?;
     let entry = |i: i64| {
@@ -158,8 +171,13 @@ fn by_primes(
 /// Why there is no quotient.
 const SINGULAR: &str = "the equations for its denominator are singular";
 
-/// The equations for the denominator and then for the numerator, with the coefficients of this series in them.
-fn linear_system(series: &PowerSeries, Quotient { above, below }: &Quotient, [p, q]: &[String; 2]) -> Vec<Line> {
+/// The equations for the denominator and then for the numerator, with the coefficients of this
+/// series in them.
+fn linear_system(
+    series: &PowerSeries,
+    Quotient { above, below }: &Quotient,
+    [p, q]: &[String; 2],
+) -> Vec<Line> {
     let (l, m) = (above.len() as i64 - 1, below.len() - 1);
     let name = |letter: &str, index: usize| Symbol::new(&format!("{letter}{index}"));
     let unknown = |j: usize| match j {
@@ -178,11 +196,17 @@ fn linear_system(series: &PowerSeries, Quotient { above, below }: &Quotient, [p,
         let polynomial = Expr::from(polynomial);
         Expr::divide(&polynomial, &first).unwrap_or(polynomial)
     };
-    let squared = Expr::symbol("omega").integer_power(2).unwrap_or_else(|_| Expr::zero());
-    let numerator: Vec<Polynomial> = (0..above.len()).map(|i| Polynomial::symbol(name(p, i))).collect();
+    let squared = Expr::symbol("omega")
+        .integer_power(2)
+        .unwrap_or_else(|_| Expr::zero());
+    let numerator: Vec<Polynomial> = (0..above.len())
+        .map(|i| Polynomial::symbol(name(p, i)))
+        .collect();
     let denominator: Vec<Polynomial> = (0..=m).map(unknown).collect();
-    let [numerator, denominator] = [numerator, denominator].map(|names| Expr::from(&series.with_powers(&names)));
-    let mut lines = vec![Line::equation(squared.clone(), &series.law).because("the exact series begins")];
+    let [numerator, denominator] =
+        [numerator, denominator].map(|names| Expr::from(&series.with_powers(&names)));
+    let mut lines =
+        vec![Line::equation(squared.clone(), &series.law).because("the exact series begins")];
     if let Ok(quotient) = Expr::divide(&numerator, &denominator) {
         lines.push(Line::equation(squared, quotient).because("agrees with"));
     }
@@ -217,7 +241,12 @@ fn denominator(series: &[Polynomial], l: i64, m: usize) -> Result<Vec<Polynomial
     if let Some((unit, numbers)) = scaled(series) {
         let zero = Rational::zero();
         let number = |power: i64| usize::try_from(power).map_or(&zero, |power| &numbers[power]);
-        let row = |k: i64| (1..=m as i64).chain([0]).map(|j| number(l + k - j).clone()).collect();
+        let row = |k: i64| {
+            (1..=m as i64)
+                .chain([0])
+                .map(|j| number(l + k - j).clone())
+                .collect()
+        };
         let solved = solve_linear((1..=m as i64).map(row).collect()).ok_or(SINGULAR)?;
         let one = std::iter::once(Rational::one());
         let values = one.chain(solved.into_iter().map(|value| -value));
@@ -225,7 +254,9 @@ fn denominator(series: &[Polynomial], l: i64, m: usize) -> Result<Vec<Polynomial
         return Ok((0..).zip(values).map(term).collect());
     }
     if m > LARGEST_WITH_SYMBOLS {
-        return Err("with these symbols the denominator's degree is at most 9; give numbers for them");
+        return Err(
+            "with these symbols the denominator's degree is at most 9; give numbers for them",
+        );
     }
     let coefficient = |power: i64| {
         let power = usize::try_from(power).ok();
@@ -244,7 +275,8 @@ fn denominator(series: &[Polynomial], l: i64, m: usize) -> Result<Vec<Polynomial
     Ok(below)
 }
 
-/// Gauss's elimination, exact: rows of coefficients with the right side last. `None` where the rows depend on each other.
+/// Gauss's elimination, exact: rows of coefficients with the right side last. `None` where the rows
+/// depend on each other.
 fn solve_linear(mut rows: Vec<Vec<Rational>>) -> Option<Vec<Rational>> {
     for column in 0..rows.len() {
         let pivot = (column..rows.len()).find(|&row| !rows[row][column].is_zero())?;
@@ -254,7 +286,11 @@ fn solve_linear(mut rows: Vec<Vec<Rational>>) -> Option<Vec<Rational>> {
             *value *= &inverse;
         }
         let pivot = rows[column].clone();
-        for (_, row) in rows.iter_mut().enumerate().filter(|(row, _)| *row != column) {
+        for (_, row) in rows
+            .iter_mut()
+            .enumerate()
+            .filter(|(row, _)| *row != column)
+        {
             let factor = row[column].clone();
             if factor.is_zero() {
                 continue;
@@ -267,10 +303,11 @@ fn solve_linear(mut rows: Vec<Vec<Rational>>) -> Option<Vec<Rational>> {
     rows.iter().map(|row| row.last().cloned()).collect()
 }
 
-/// `(-1)^j` times the determinant of the rows without column `j`, for every `j`: row by row, the minors of all sets of columns
-/// by Laplace's expansion.
+/// `(-1)^j` times the determinant of the rows without column `j`, for every `j`: row by row, the
+/// minors of all sets of columns by Laplace's expansion.
 fn cofactors(rows: &[Vec<Polynomial>]) -> Vec<Polynomial> {
-    let mut minors: BTreeMap<u32, Polynomial> = BTreeMap::from([(0, Polynomial::constant(Rational::one()))]);
+    let mut minors: BTreeMap<u32, Polynomial> =
+        BTreeMap::from([(0, Polynomial::constant(Rational::one()))]);
     for row in rows {
         let mut next: BTreeMap<u32, Polynomial> = BTreeMap::new();
         for (columns, minor) in &minors {
@@ -291,7 +328,9 @@ fn cofactors(rows: &[Vec<Polynomial>]) -> Vec<Polynomial> {
     }
     let all = (1_u32 << (rows.len() + 1)) - 1;
     let mut cofactor = |j: usize| {
-        let mut minor = minors.remove(&(all & !(1 << j))).unwrap_or_else(Polynomial::zero);
+        let mut minor = minors
+            .remove(&(all & !(1 << j)))
+            .unwrap_or_else(Polynomial::zero);
         if j % 2 == 1 {
             minor.negate();
         }
@@ -307,7 +346,9 @@ fn normalise(coefficients: &mut [Polynomial], first: &Polynomial) {
     };
     let (inverse, number) = (monomial.power(-1), number.recip());
     for coefficient in coefficients {
-        *coefficient = coefficient.times_monomial(&inverse).map(|value| value * &number);
+        *coefficient = coefficient
+            .times_monomial(&inverse)
+            .map(|value| value * &number);
     }
 }
 
@@ -319,8 +360,12 @@ fn poles(below: &Polynomial) -> Poles {
     let coefficients: Vec<f64> = exact.iter().map(to_f64).collect();
     let mut places: Vec<f64> = real_roots(&coefficients);
     if exact.len() > LARGEST_BY_FRACTIONS + 1 {
-        // Roots of so many in doubles are taken for what they are where the exact polynomial changes its sign.
-        let floats: Vec<BigFloat> = exact.iter().map(|value| BigFloat::of_fraction(value, BITS)).collect();
+        // Roots of so many in doubles are taken for what they are where the exact polynomial
+        // changes its sign.
+        let floats: Vec<BigFloat> = exact
+            .iter()
+            .map(|value| BigFloat::of_fraction(value, BITS))
+            .collect();
         places.retain(|place| changes_sign(&floats, *place));
     }
     places.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
@@ -356,7 +401,8 @@ fn in_one_variable(polynomial: &Polynomial) -> Option<(Monomial, Vec<Rational>)>
         .clone();
     let mut coefficients = Vec::new();
     for (monomial, number) in polynomial.terms() {
-        let power = (0..=LARGEST_DEGREE as i32).find(|&power| unit.power(power) == *monomial)? as usize;
+        let power =
+            (0..=LARGEST_DEGREE as i32).find(|&power| unit.power(power) == *monomial)? as usize;
         coefficients.resize(coefficients.len().max(power + 1), Rational::zero());
         coefficients[power] = number.clone();
     }
@@ -383,7 +429,8 @@ mod tests {
         Ok(solution.law.closed_form().unwrap().value.clone())
     }
 
-    /// omega of the pendulum is pi/(2 K(sin(A/2)^2)), by the arithmetic-geometric mean 1/agm(1, cos(A/2)) of half its period.
+    /// omega of the pendulum is pi/(2 K(sin(A/2)^2)), by the arithmetic-geometric mean 1/agm(1,
+    /// cos(A/2)) of half its period.
     #[test]
     fn high_degrees_meet_the_pendulum_near_its_separatrix() {
         let law = approximant("x'' + sin(x) = 0", (8, 8)).unwrap();
@@ -392,19 +439,26 @@ mod tests {
         for _ in 0..9 {
             (a, g) = ((a + g) / 2.0, f64::sqrt(a * g));
         }
-        let found = law.evaluate(&[(Symbol::new("A"), amplitude)].into()).unwrap().sqrt();
+        let found = law
+            .evaluate(&[(Symbol::new("A"), amplitude)].into())
+            .unwrap()
+            .sqrt();
         assert!((found / a - 1.0).abs() < 1e-6, "{found} {a}");
     }
 
-    /// The highest degrees, whose whole numbers are far beyond double precision, against half the period by quadrature in the
-    /// angle of x = A sin(theta), which is analytic and periodic.
+    /// The highest degrees, whose whole numbers are far beyond double precision, against half the
+    /// period by quadrature in the angle of x = A sin(theta), which is analytic and periodic.
     #[test]
     fn twenty_over_twenty() {
         type Work = fn(f64) -> f64;
         let cases: [(&str, Work, f64); 3] = [
             ("x'' + sin(x) = 0", |x| 1.0 - x.cos(), 2.8),
             ("x'' + x/(1 + x^2) = 0", |x| 0.5 * x.powi(2).ln_1p(), 2.0),
-            ("x'' + 1e-9*sin(1e3*x) = 0", |x| 1e-12 * (1.0 - (1e3 * x).cos()), 2.5e-3),
+            (
+                "x'' + 1e-9*sin(1e3*x) = 0",
+                |x| 1e-12 * (1.0 - (1e3 * x).cos()),
+                2.5e-3,
+            ),
         ];
         for (equation, potential, amplitude) in cases {
             let law = approximant(equation, (20, 20)).unwrap();
@@ -417,8 +471,14 @@ mod tests {
                 })
                 .sum();
             let expected = std::f64::consts::PI / (2.0 * quarter);
-            let found = law.evaluate(&[(Symbol::new("A"), amplitude)].into()).unwrap().sqrt();
-            assert!((found / expected - 1.0).abs() < 1e-6, "{equation}: {found} {expected}");
+            let found = law
+                .evaluate(&[(Symbol::new("A"), amplitude)].into())
+                .unwrap()
+                .sqrt();
+            assert!(
+                (found / expected - 1.0).abs() < 1e-6,
+                "{equation}: {found} {expected}"
+            );
         }
     }
 
@@ -430,23 +490,43 @@ mod tests {
             (a, g) = ((a + g) / 2.0, f64::sqrt(a * g));
         }
         let law = approximant("x'' + x + eps*x^3 = 0", (12, 12)).unwrap();
-        let found = law.evaluate(&[("A".into(), 2.0), ("eps".into(), 1.0)].into()).unwrap();
-        assert!((found.sqrt() / (f64::sqrt(5.0) * a) - 1.0).abs() < 1e-9, "{found}");
+        let found = law
+            .evaluate(&[("A".into(), 2.0), ("eps".into(), 1.0)].into())
+            .unwrap();
+        assert!(
+            (found.sqrt() / (f64::sqrt(5.0) * a) - 1.0).abs() < 1e-9,
+            "{found}"
+        );
     }
 
     #[test]
     fn poles_are_the_real_zeros_alone() {
         let named = |terms: &[(i32, f64)]| {
             let term = |&(power, value): &(i32, f64)| {
-                let unit = Monomial::power_of("k".into(), power).product(&Monomial::power_of("A".into(), 2 * power));
+                let unit = Monomial::power_of("k".into(), power)
+                    .product(&Monomial::power_of("A".into(), 2 * power));
                 Polynomial::term(unit, crate::exact::from_f64(value).unwrap())
             };
-            poles(&terms.iter().map(term).fold(Polynomial::zero(), |sum, term| sum + term)).to_string()
+            poles(
+                &terms
+                    .iter()
+                    .map(term)
+                    .fold(Polynomial::zero(), |sum, term| sum + term),
+            )
+            .to_string()
         };
         // (1 - z/2)(1 + z^n): of the circle only -1 is real, and for even n none.
         let product = |n: i32| named(&[(0, 1.0), (1, -0.5), (n, 1.0), (n + 1, -0.5)]);
-        assert!(product(19).starts_with("poles at k*A^2 = -1, 2:"), "{}", product(19));
-        assert!(product(18).starts_with("poles at k*A^2 = 2:"), "{}", product(18));
+        assert!(
+            product(19).starts_with("poles at k*A^2 = -1, 2:"),
+            "{}",
+            product(19)
+        );
+        assert!(
+            product(18).starts_with("poles at k*A^2 = 2:"),
+            "{}",
+            product(18)
+        );
         // Beyond the highest degree nothing is listed.
         assert!(
             product(60).starts_with("where its denominator vanishes"),
@@ -455,7 +535,9 @@ mod tests {
         );
         // A pair of zeros next to the axis is none on it, at any scale; a double zero is two.
         for unit in [1.0, 1e3, 1e-3] {
-            let near = |distance: f64| real_roots(&[unit * unit * (1.0 + distance), -2.0 * unit, 1.0]).len();
+            let near = |distance: f64| {
+                real_roots(&[unit * unit * (1.0 + distance), -2.0 * unit, 1.0]).len()
+            };
             assert_eq!((near(1e-8), near(-1e-8)), (0, 2), "{unit}");
         }
         assert_eq!(

@@ -1,7 +1,8 @@
 //! Parameter expansion: the coefficients of the equation expanded in a bookkeeping parameter.
 //!
-//! References: J.-H. He, *Some asymptotic methods for strongly nonlinear equations*, Int. J. Mod. Phys. B 20 (2006)
-//! 1141-1199, section 5; L. Xu, *He's parameter-expanding methods for strongly nonlinear oscillators*, J. Comput. Appl. Math. 207 (2007) 148-154.
+//! References: J.-H. He, *Some asymptotic methods for strongly nonlinear equations*, Int. J. Mod.
+//! Phys. B 20 (2006) 1141-1199, section 5; L. Xu, *He's parameter-expanding methods for strongly
+//! nonlinear oscillators*, J. Comput. Appl. Math. 207 (2007) 148-154.
 //!
 //! ```text
 //! x'' + omega0^2 x + p N(x) = 0,   omega0^2 = omega^2 + p w_1 + p^2 w_2 + ...,   x = x_0 + p x_1 + ...
@@ -9,9 +10,9 @@
 //! x_1'' + omega^2 x_1 + w_1 x_0 + N(x_0) = 0,   no secular term:   w_1 = omega0^2 - omega^2 = -c_1[N]/A
 //! ```
 //!
-//! `omega0^2 = 0` is allowed: `0 = omega^2 + p w_1 + ...` is how the method treats forces without linear part. At first order
-//! any force enters as it is, sine, |x| and all; above, the steps are those of
-//! [homotopy perturbation](super::homotopy_perturbation) with the force as a polynomial.
+//! `omega0^2 = 0` is allowed: `0 = omega^2 + p w_1 + ...` is how the method treats forces without
+//! linear part. At first order any force enters as it is, sine, |x| and all; above, the steps are
+//! those of [homotopy perturbation](super::homotopy_perturbation) with the force as a polynomial.
 //!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
@@ -32,25 +33,36 @@ use crate::solution::{Method, Solution};
 use crate::symbol::letters::FREQUENCY;
 use crate::symbol::{fresh, fresh_stem};
 
-/// The frequency, and the motion, to an order in the bookkeeping parameter; order 2 unless the force is no polynomial.
+/// The frequency, and the motion, to an order in the bookkeeping parameter; order 2 unless the
+/// force is no polynomial.
 ///
 /// # Errors
-/// A force that is not conservative, by its term; above the first order, a force that is no polynomial.
+/// A force that is not conservative, by its term; above the first order, a force that is no
+/// polynomial.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     const METHOD: Method = Method::ParameterExpansion;
     conservative_force(oscillator, options, METHOD)?;
     let polynomial = oscillator.polynomial_degree()?.is_some();
     let order = options
         .order
-        .unwrap_or(if polynomial || options.taylor.is_some() { 2 } else { 1 });
+        .unwrap_or(if polynomial || options.taylor.is_some() {
+            2
+        } else {
+            1
+        });
     if order <= 1 && options.taylor.is_none() {
         let mut solution = solve_by_integral(oscillator, options, METHOD)?;
         let omega = Expr::symbol("omega").integer_power(2)?;
         let along = Expr::symbol("A") * Expr::from(oscillator.phase()).cos()?;
-        let driven = &omega * &along - oscillator.force.substitute(oscillator.coordinate, &along)?;
+        let driven =
+            &omega * &along - oscillator.force.substitute(oscillator.coordinate, &along)?;
         let [start, first] = [0, 1].map(|number| numbered(oscillator, number));
         let names = oscillator.names();
-        let (p, w, omega0) = (fresh("p", &names), fresh_stem("w", &names), fresh("omega0", &names));
+        let (p, w, omega0) = (
+            fresh("p", &names),
+            fresh_stem("w", &names),
+            fresh("omega0", &names),
+        );
         let left = Formula::Oscillator {
             of: first,
             square: omega,

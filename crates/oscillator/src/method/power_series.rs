@@ -1,5 +1,5 @@
-//! omega^2 as a power series in one variable, with what its symbols have in common taken out; and what the methods share that sum
-//! it up in another way.
+//! omega^2 as a power series in one variable, with what its symbols have in common taken out; and
+//! what the methods share that sum it up in another way.
 
 use num_traits::{One, Zero};
 
@@ -10,7 +10,9 @@ use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, ClosedForm, Definition, Degrees, Law, Method, Note, Solution};
+use crate::solution::{
+    AmplitudeConvention, ClosedForm, Definition, Degrees, Law, Method, Note, Solution,
+};
 use crate::symbol::Symbol;
 
 /// omega^2 in powers of `s`, the small parameter or its square.
@@ -29,7 +31,9 @@ impl PowerSeries {
         let small = solution.small_parameter;
         let law = solution.law.frequency_squared().cloned();
         let law = law.unwrap_or_else(Polynomial::zero);
-        let even = law.terms().all(|(monomial, _)| monomial.exponent(small) % 2 == 0);
+        let even = law
+            .terms()
+            .all(|(monomial, _)| monomial.exponent(small) % 2 == 0);
         Self {
             law,
             small,
@@ -49,33 +53,44 @@ impl PowerSeries {
     pub fn with_powers(&self, coefficients: &[Polynomial]) -> Polynomial {
         let mut sum = Polynomial::zero();
         for (power, coefficient) in coefficients.iter().enumerate() {
-            sum.accumulate(&coefficient.times_monomial(&Monomial::power_of(self.small, self.step * power as i32)));
+            sum.accumulate(
+                &coefficient
+                    .times_monomial(&Monomial::power_of(self.small, self.step * power as i32)),
+            );
         }
         sum
     }
 
-    /// The series in one variable, where all other symbols enter in step with `s`: the variable, `s` times a unit of theirs, and the
-    /// coefficients in it over the first, as many as the law has powers.
+    /// The series in one variable, where all other symbols enter in step with `s`: the variable,
+    /// `s` times a unit of theirs, and the coefficients in it over the first, as many as the law
+    /// has powers.
     pub fn in_one_variable(&self) -> Option<(Monomial, Vec<Rational>)> {
         let (_, highest) = self.law.exponent_range(self.small)?;
         let coefficients: Vec<Polynomial> = (0..=i64::from(highest / self.step))
             .map(|power| self.coefficient(power))
             .collect();
         let (unit, numbers) = scaled(&coefficients)?;
-        Some((Monomial::power_of(self.small, self.step).product(&unit), numbers))
+        Some((
+            Monomial::power_of(self.small, self.step).product(&unit),
+            numbers,
+        ))
     }
 }
 
 /// The terms of one power of the small parameter, without it.
 fn part(law: &Polynomial, small: Symbol, power: i32) -> Polynomial {
     let mut part = Polynomial::zero();
-    for (monomial, number) in law.terms().filter(|(monomial, _)| monomial.exponent(small) == power) {
+    for (monomial, number) in law
+        .terms()
+        .filter(|(monomial, _)| monomial.exponent(small) == power)
+    {
         part.add_term(monomial.without(small), number.clone());
     }
     part
 }
 
-/// The numbers `n_k` of a series `c_k = c_0 unit^k n_k` whose symbols enter in step with the order, and the unit.
+/// The numbers `n_k` of a series `c_k = c_0 unit^k n_k` whose symbols enter in step with the order,
+/// and the unit.
 pub(crate) fn scaled(series: &[Polynomial]) -> Option<(Monomial, Vec<Rational>)> {
     let (base, _) = series.first()?.single_term()?;
     let ratio = |c: &Polynomial| Some(c.single_term()?.0.product(&base.power(-1)));
@@ -89,7 +104,9 @@ pub(crate) fn scaled(series: &[Polynomial]) -> Option<(Monomial, Vec<Rational>)>
     }
     let number = |(k, c): (i32, &Polynomial)| match c.is_zero() {
         true => Some(Rational::zero()),
-        false => (ratio(c)? == unit.power(k)).then(|| c.single_term().map(|term| term.1.clone()))?,
+        false => {
+            (ratio(c)? == unit.power(k)).then(|| c.single_term().map(|term| term.1.clone()))?
+        }
     };
     let numbers: Option<Vec<Rational>> = (0..).zip(series).map(number).collect();
     Some((unit, numbers?))
@@ -119,12 +136,14 @@ impl Resummed {
         options: &Options,
         (method, order): (Method, u32),
     ) -> Result<Option<Self>, Refusal> {
-        /// Beyond, the series is derived without its motion, of which the first correction is all that is used.
+        /// Beyond, the series is derived without its motion, of which the first correction is all
+        /// that is used.
         const LONG: u32 = 24;
         if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
             return Err(Unsuited::Convention.to(method));
         }
-        let in_amplitude = oscillator.small_parameter(options.small.as_deref())? == SmallParameter::Amplitude;
+        let in_amplitude =
+            oscillator.small_parameter(options.small.as_deref())? == SmallParameter::Amplitude;
         let long = order > LONG;
         let series_to = |highest: u32, frequency_alone: bool| {
             let options = Options {
@@ -135,13 +154,16 @@ impl Resummed {
             let solution = lindstedt_poincare::solve(oscillator, &options)?;
             Ok::<_, Refusal>((solution.order >= highest).then_some(solution))
         };
-        let Some(mut solution) = series_to(if in_amplitude { 2 * order } else { order }, long)? else {
+        let Some(mut solution) = series_to(if in_amplitude { 2 * order } else { order }, long)?
+        else {
             return Ok(None);
         };
         // The frequency of a limit cycle is mostly the same for both signs of what is small.
         let of_cycle = solution.limit_cycle.is_some() && order > 0;
         // Quadratic approximants of an even series are not unique in the parameter itself.
-        let even = method == Method::HermitePade && !in_amplitude && PowerSeries::of(&solution, true).step == 2;
+        let even = method == Method::HermitePade
+            && !in_amplitude
+            && PowerSeries::of(&solution, true).step == 2;
         if of_cycle || even {
             let Some(further) = series_to(2 * order, long)? else {
                 return Ok(None);
@@ -197,7 +219,8 @@ impl Resummed {
         }
     }
 
-    /// The answer with another value for omega^2, what is to be said of that, and how it comes about.
+    /// The answer with another value for omega^2, what is to be said of that, and how it comes
+    /// about.
     pub fn answer(
         self,
         degrees: Degrees,
@@ -206,14 +229,23 @@ impl Resummed {
     ) -> Solution {
         let mut solution = self.solution;
         let harmonics = solution.displacement.harmonics();
-        let motion = harmonics.iter().flat_map(|(_, cosine, sine)| [cosine, sine]);
+        let motion = harmonics
+            .iter()
+            .flat_map(|(_, cosine, sine)| [cosine, sine]);
         let mut used = &solution.equilibrium.symbols() | &self.series.law.symbols();
         used.extend(motion.flat_map(Polynomial::symbols));
-        solution.definitions = solution.definitions_behind(used).into_iter().cloned().collect();
+        solution.definitions = solution
+            .definitions_behind(used)
+            .into_iter()
+            .cloned()
+            .collect();
         solution.definitions.extend(definitions);
         solution.order = self.order;
         solution.degrees = Some(degrees);
-        solution.law = Law::Closed(ClosedForm { squared: true, value });
+        solution.law = Law::Closed(ClosedForm {
+            squared: true,
+            value,
+        });
         solution.steps = vec![];
         solution.validity = validity;
         solution.derivation = derivation;
@@ -222,16 +254,27 @@ impl Resummed {
 }
 
 /// The motion up to the first power of the expansion variable beyond the leading term.
-fn first_correction(motion: &FourierSeries<Polynomials>, small: Symbol, step: i32) -> FourierSeries<Polynomials> {
+fn first_correction(
+    motion: &FourierSeries<Polynomials>,
+    small: Symbol,
+    step: i32,
+) -> FourierSeries<Polynomials> {
     let leading = if small == Symbol::new("A") { 1 } else { 0 };
     motion.map(POLYNOMIALS, |coefficient, _| {
         coefficient.truncated(small, leading + step)
     })
 }
 
-/// Whether a quotient can be evaluated in double precision, where its whole numbers do not overflow.
+/// Whether a quotient can be evaluated in double precision, where its whole numbers do not
+/// overflow.
 pub(crate) fn has_values(value: &Expr) -> bool {
-    let at = |place: f64| value.symbols().into_iter().map(|symbol| (symbol, place)).collect();
+    let at = |place: f64| {
+        value
+            .symbols()
+            .into_iter()
+            .map(|symbol| (symbol, place))
+            .collect()
+    };
     // One of the places may be a pole.
     [1.0, 0.5]
         .iter()

@@ -1,8 +1,9 @@
-//! Refusals in the words of the reader: the term of the normal form that is in the way, `x'^3/2` say, gives way to the term
-//! that was typed, `0.5*(x')^3`.
+//! Refusals in the words of the reader: the term of the normal form that is in the way, `x'^3/2`
+//! say, gives way to the term that was typed, `0.5*(x')^3`.
 //!
-//! A typed term is what a term of the force comes from if that term, its number apart, is one of the expansion of the typed
-//! one: divided by the coefficient of the acceleration and seen from the equilibrium, as the force is.
+//! A typed term is what a term of the force comes from if that term, its number apart, is one of
+//! the expansion of the typed one: divided by the coefficient of the acceleration and seen from the
+//! equilibrium, as the force is.
 
 use std::convert::Infallible;
 
@@ -13,7 +14,11 @@ use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::taylor::TaylorError;
 
 /// A refusal whose term is quoted as it was typed, where it can be told which that was.
-pub(super) fn as_typed(mut refusal: Refusal, oscillator: &Oscillator, centred: &Centred) -> Refusal {
+pub(super) fn as_typed(
+    mut refusal: Refusal,
+    oscillator: &Oscillator,
+    centred: &Centred,
+) -> Refusal {
     let moved = !centred.position.is_zero();
     if let Refusal::Unsuited { reason, .. } = &mut refusal {
         quote(reason, oscillator, centred);
@@ -36,7 +41,9 @@ pub(super) fn as_typed(mut refusal: Refusal, oscillator: &Oscillator, centred: &
             }
         }
         Refusal::AmplitudeNotFree { term }
-        | Refusal::Oscillator(OscillatorError::NotSmall { term, .. } | OscillatorError::NotPolynomial(term)) => {
+        | Refusal::Oscillator(
+            OscillatorError::NotSmall { term, .. } | OscillatorError::NotPolynomial(term),
+        ) => {
             replace(term, typed(term, oscillator, centred));
         }
         _ => {}
@@ -57,8 +64,10 @@ fn quote(reason: &mut Unsuited, oscillator: &Oscillator, centred: &Centred) {
             found => replace(term, found),
         },
         Unsuited::Velocity { term } => {
-            // It may be the factor of the acceleration that brings the velocity in: then the term is shown over that.
-            let has_velocity = |found: &Quotation| found.words().contains(oscillator.velocity().name());
+            // It may be the factor of the acceleration that brings the velocity in: then the term
+            // is shown over that.
+            let has_velocity =
+                |found: &Quotation| found.words().contains(oscillator.velocity().name());
             replace(term, typed(term, oscillator, centred).filter(has_velocity));
         }
         Unsuited::Damping { term, .. }
@@ -99,7 +108,8 @@ fn typed(sum: &Quotation, oscillator: &Oscillator, centred: &Centred) -> Option<
     };
     let comes_from = |part: &Expr| {
         // The even part of a force may hold the mirror image of what was typed.
-        part.expand().is_ok_and(|part| among(&part)) || mirrored(part).is_ok_and(|part| among(&part))
+        part.expand().is_ok_and(|part| among(&part))
+            || mirrored(part).is_ok_and(|part| among(&part))
     };
     let mut numbers = numbers_where(&parts, comes_from);
     if numbers.is_empty() {
@@ -108,15 +118,17 @@ fn typed(sum: &Quotation, oscillator: &Oscillator, centred: &Centred) -> Option<
         numbers = numbers_where(&parts, |part| symbols.is_subset(&part.symbols()));
         numbers = if numbers.len() == 1 { numbers } else { vec![] };
     }
-    (!numbers.is_empty()).then(|| Quotation::new(expression.clone(), oscillator.typed.quote(&numbers)))
+    (!numbers.is_empty())
+        .then(|| Quotation::new(expression.clone(), oscillator.typed.quote(&numbers)))
 }
 
 /// The first typed term in which an expression occurs.
 fn typed_around(inner: &Expr, oscillator: &Oscillator, centred: &Centred) -> Option<Quotation> {
     let parts = parts(oscillator, centred);
     let occurs = |part: &Expr| {
-        let found =
-            part.fold(|expr, below: &[bool]| Ok::<bool, Infallible>(expr == inner || below.iter().any(|&found| found)));
+        let found = part.fold(|expr, below: &[bool]| {
+            Ok::<bool, Infallible>(expr == inner || below.iter().any(|&found| found))
+        });
         found.unwrap_or(false)
     };
     let number = numbers_where(&parts, occurs).into_iter().next()?;
@@ -140,8 +152,8 @@ fn numbers_where(parts: &[Option<Expr>], holds: impl Fn(&Expr) -> bool) -> Vec<u
     numbers.map(|(number, _)| number).collect()
 }
 
-/// What each typed term adds to the force about the equilibrium; nothing for those with the acceleration in them, and for the
-/// zero of `= 0`.
+/// What each typed term adds to the force about the equilibrium; nothing for those with the
+/// acceleration in them, and for the zero of `= 0`.
 fn parts(oscillator: &Oscillator, centred: &Centred) -> Vec<Option<Expr>> {
     let (coordinate, acceleration) = (oscillator.coordinate, oscillator.velocity().derivative());
     let Ok(mass) = oscillator.residual.differentiate(acceleration) else {
@@ -155,9 +167,11 @@ fn parts(oscillator: &Oscillator, centred: &Centred) -> Vec<Option<Expr>> {
         }
     };
     let values = oscillator.typed.values();
-    let parts = values.map(|value| match value.is_zero() || value.contains(acceleration) {
-        true => None,
-        false => part(value).ok(),
-    });
+    let parts = values.map(
+        |value| match value.is_zero() || value.contains(acceleration) {
+            true => None,
+            false => part(value).ok(),
+        },
+    );
     parts.collect()
 }

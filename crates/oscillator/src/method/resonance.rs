@@ -34,8 +34,8 @@ pub(super) fn by_distance(mut resonances: Vec<(u32, u32)>, ratio: f64) -> Vec<(u
     resonances
 }
 
-/// An error where a ratio of frequencies is far from the resonance that is nearest to it: the detuning, which is to be small, is more
-/// than half of the linear frequency beside.
+/// An error where a ratio of frequencies is far from the resonance that is nearest to it: the
+/// detuning, which is to be small, is more than half of the linear frequency beside.
 pub(super) fn is_near((p, q): (u32, u32), ratio: f64, method: Method) -> Result<(), Refusal> {
     const FAR: f64 = 0.5;
     let nearest = (p, q);
@@ -45,8 +45,9 @@ pub(super) fn is_near((p, q): (u32, u32), ratio: f64, method: Method) -> Result<
     }
 }
 
-/// The options with the resonance that is nearest to the frequencies at these values, of those that the equation has; as they
-/// are where one is asked for, nothing drives the motion, or a value is missing.
+/// The options with the resonance that is nearest to the frequencies at these values, of those that
+/// the equation has; as they are where one is asked for, nothing drives the motion, or a value is
+/// missing.
 ///
 /// # Errors
 /// The drive is far from all of them.
@@ -60,10 +61,15 @@ pub(super) fn is_near((p, q): (u32, u32), ratio: f64, method: Method) -> Result<
 /// assert_eq!(with_resonance_at(&duffing, &Options::default(), &at)?.resonance, Some((1, 3)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn with_resonance_at(oscillator: &Oscillator, options: &Options, at: &Values) -> Result<Options, Refusal> {
+pub fn with_resonance_at(
+    oscillator: &Oscillator,
+    options: &Options,
+    at: &Values,
+) -> Result<Options, Refusal> {
     let method = options.method.unwrap_or(Method::MultipleScales);
     let mut chosen = options.clone();
-    if options.resonance.is_some() || !matches!(method, Method::MultipleScales | Method::Averaging) {
+    if options.resonance.is_some() || !matches!(method, Method::MultipleScales | Method::Averaging)
+    {
         return Ok(chosen);
     }
     // A linear equation is answered as it is, near a resonance or not.
@@ -73,13 +79,15 @@ pub fn with_resonance_at(oscillator: &Oscillator, options: &Options, at: &Values
     let Some((resonances, ratio)) = ratio_at(oscillator, at, method) else {
         return Ok(chosen);
     };
-    let found = by_distance(resonances, ratio).into_iter().find(|candidate| {
-        let asked = Options {
-            resonance: Some(*candidate),
-            ..options.clone()
-        };
-        super::solve(oscillator, &asked).is_ok()
-    });
+    let found = by_distance(resonances, ratio)
+        .into_iter()
+        .find(|candidate| {
+            let asked = Options {
+                resonance: Some(*candidate),
+                ..options.clone()
+            };
+            super::solve(oscillator, &asked).is_ok()
+        });
     if let Some(nearest) = found {
         is_near(nearest, ratio, method)?;
         chosen.resonance = found;
@@ -87,15 +95,26 @@ pub fn with_resonance_at(oscillator: &Oscillator, options: &Options, at: &Values
     Ok(chosen)
 }
 
-/// The resonances of the drive, and the ratio of the frequencies at these values; `None` where nothing drives, or one is missing.
-fn ratio_at(oscillator: &Oscillator, at: &Values, method: Method) -> Option<(Vec<(u32, u32)>, f64)> {
+/// The resonances of the drive, and the ratio of the frequencies at these values; `None` where
+/// nothing drives, or one is missing.
+fn ratio_at(
+    oscillator: &Oscillator,
+    at: &Values,
+    method: Method,
+) -> Option<(Vec<(u32, u32)>, f64)> {
     let centred = crate::equilibrium::centred(oscillator, None).ok()?;
     let oscillator = &centred.oscillator;
-    let parts = oscillator.parts().ok().filter(|parts| !parts.forcing.is_zero())?;
+    let parts = oscillator
+        .parts()
+        .ok()
+        .filter(|parts| !parts.forcing.is_zero())?;
     let drive = Drive::of(&parts, oscillator, method).ok()?;
     let mut numbers = at.numbers();
     if let Some(definition) = &centred.definition {
-        numbers.insert(definition.symbol, definition.meaning.evaluate(&numbers).ok()?);
+        numbers.insert(
+            definition.symbol,
+            definition.meaning.evaluate(&numbers).ok()?,
+        );
     }
     let x = oscillator.coordinate;
     let stiffness = parts
@@ -104,6 +123,7 @@ fn ratio_at(oscillator: &Oscillator, at: &Values, method: Method) -> Option<(Vec
         .ok()?
         .substitute(x, &Expr::zero())
         .ok()?;
-    let ratio = drive.frequency.evaluate(&numbers).ok()? / stiffness.evaluate(&numbers).ok()?.sqrt();
+    let ratio =
+        drive.frequency.evaluate(&numbers).ok()? / stiffness.evaluate(&numbers).ok()?.sqrt();
     Some((drive.resonances(), ratio)).filter(|(_, ratio)| ratio.is_normal())
 }

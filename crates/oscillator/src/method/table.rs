@@ -1,18 +1,20 @@
 //! The table of methods: a row each, with what the rest of the program needs to know of it.
 //!
-//! In: a [`Method`]. Out: its [`Entry`]: the function that solves, the options it takes, what it sees of a force.
+//! In: a [`Method`]. Out: its [`Entry`]: the function that solves, the options it takes, what it
+//! sees of a force.
 
 use super::{
-    Options, Refusal, amplitude_frequency, averaging, energy_balance, exact, frequency_formula, hamiltonian,
-    harmonic_balance, hermite_pade, homotopy_analysis, homotopy_perturbation, inertia, iteration_perturbation,
-    lindstedt_poincare, max_min, multiple_scales, one_term, pade, parameter_expansion, variational_iteration,
+    Options, Refusal, amplitude_frequency, averaging, energy_balance, exact, frequency_formula,
+    hamiltonian, harmonic_balance, hermite_pade, homotopy_analysis, homotopy_perturbation, inertia,
+    iteration_perturbation, lindstedt_poincare, max_min, multiple_scales, one_term, pade,
+    parameter_expansion, variational_iteration,
 };
 use crate::conservative::force::Force;
 use crate::oscillator::Oscillator;
 use crate::solution::{Degrees, Method, Solution};
 
-/// omega^2 of a motion `A cos(theta)` by what defines it, in numbers: of the force about the equilibrium and the size of the
-/// amplitude. With a bound of its error, relative.
+/// omega^2 of a motion `A cos(theta)` by what defines it, in numbers: of the force about the
+/// equilibrium and the size of the amplitude. With a bound of its error, relative.
 pub type Definition = fn(&Force, f64) -> Option<(f64, f64)>;
 
 /// A row of [`METHODS`].
@@ -25,13 +27,14 @@ pub struct Entry {
     pub takes: &'static [Choice],
     /// What it sees of the force.
     pub sees: Sees,
-    /// About an equilibrium without a closed form: the degree of the Taylor polynomial with rounded coefficients that stands
-    /// for the force, zero for a polynomial force kept whole; `None` where the force is taken as it is. The flag says whether
-    /// the force is a polynomial.
+    /// About an equilibrium without a closed form: the degree of the Taylor polynomial with rounded
+    /// coefficients that stands for the force, zero for a polynomial force kept whole; `None` where
+    /// the force is taken as it is. The flag says whether the force is a polynomial.
     pub rounded_degree: fn(&Options, bool) -> Option<u32>,
     /// For methods of one term.
     pub definition: Option<Definition>,
-    /// Whether its law knows the sign of the amplitude; one that does not is written for positive ones.
+    /// Whether its law knows the sign of the amplitude; one that does not is written for positive
+    /// ones.
     pub signed: bool,
     /// How its motion becomes numbers.
     pub motion: Motion,
@@ -126,7 +129,13 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         solve: homotopy_perturbation::solve,
         takes: &[Choice::Order, Choice::Taylor],
         sees: Sees::TaylorPolynomial,
-        rounded_degree: |options, _| Some(options.taylor.unwrap_or(beyond_twice(options.order.unwrap_or(2)))),
+        rounded_degree: |options, _| {
+            Some(
+                options
+                    .taylor
+                    .unwrap_or(beyond_twice(options.order.unwrap_or(2))),
+            )
+        },
         definition: None,
         signed: true,
         ..OF_THE_SHARED_INTEGRAL
@@ -136,7 +145,13 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         solve: homotopy_analysis::solve,
         takes: &[Choice::Order, Choice::Taylor, Choice::Hbar],
         sees: Sees::TaylorPolynomial,
-        rounded_degree: |options, _| Some(options.taylor.unwrap_or(beyond_twice(options.order.unwrap_or(2)))),
+        rounded_degree: |options, _| {
+            Some(
+                options
+                    .taylor
+                    .unwrap_or(beyond_twice(options.order.unwrap_or(2))),
+            )
+        },
         definition: None,
         signed: true,
         ..OF_THE_SHARED_INTEGRAL
@@ -144,7 +159,9 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
     Entry {
         method: Method::IterationPerturbation,
         solve: iteration_perturbation::solve,
-        rounded_degree: |options, polynomial| (polynomial && options.order.is_some_and(|order| order > 1)).then_some(0),
+        rounded_degree: |options, polynomial| {
+            (polynomial && options.order.is_some_and(|order| order > 1)).then_some(0)
+        },
         motion: Motion::Iterate,
         ..OF_THE_SHARED_INTEGRAL
     },
@@ -226,7 +243,11 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         solve: hermite_pade::solve,
         takes: &[Choice::Degrees, Choice::Cycle],
         sees: Sees::Derivatives,
-        rounded_degree: |options, _| Some(beyond_twice(options.degrees.map_or(3, Degrees::sum).saturating_add(1))),
+        rounded_degree: |options, _| {
+            Some(beyond_twice(
+                options.degrees.map_or(3, Degrees::sum).saturating_add(1),
+            ))
+        },
         definition: None,
         signed: true,
         ..OF_THE_SHARED_INTEGRAL

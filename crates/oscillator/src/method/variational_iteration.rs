@@ -1,7 +1,7 @@
 //! Variational iteration: one correction functional, its secular term removed.
 //!
-//! Reference: J.-H. He, *Variational iteration method: a kind of non-linear analytical technique: some examples*, Int. J.
-//! Non-Linear Mech. 34 (1999) 699-708.
+//! Reference: J.-H. He, *Variational iteration method: a kind of non-linear analytical technique:
+//! some examples*, Int. J. Non-Linear Mech. 34 (1999) 699-708.
 //!
 //! ```text
 //! u_1(t) = u_0(t) + int_0^t lambda [u_0'' + f(u_0)] ds,   lambda = sin(omega (s - t))/omega,   u_0 = A cos(omega t)
@@ -21,7 +21,9 @@
 //! ```
 
 use super::iteration_perturbation::first_iterate;
-use super::one_term::{conservative_force, first_order_only, integral_law, note_even_part_last, solve_by_integral};
+use super::one_term::{
+    conservative_force, first_order_only, integral_law, note_even_part_last, solve_by_integral,
+};
 use super::{Options, Refusal};
 use crate::derivation::{Formula, Line};
 use crate::expr::Expr;
@@ -44,7 +46,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let [amplitude, omega, t, s] = ["A", "omega", "t", variable.name()].map(Expr::symbol);
     let [start, first] = [0, 1].map(|number| Expr::symbol(&format!("{letter}{number}")));
     let along = &amplitude * &(&omega * &s).cos()?;
-    let defect = force.substitute(oscillator.coordinate, &along)? - omega.integer_power(2)? * &along;
+    let defect =
+        force.substitute(oscillator.coordinate, &along)? - omega.integer_power(2)? * &along;
     let multiplier = Expr::divide(&(&omega * &(s - &t)).sin()?, &omega)?;
     let functional = Formula::Integral {
         factor: Expr::one(),
@@ -57,7 +60,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         Line::equation(start.clone(), &amplitude * &(&omega * &t).cos()?).because("first iterate"),
         Line::equation(first - start, functional).because("correction functional"),
     ];
-    solution.derivation.extend(integral_law(oscillator, &force, &solution)?);
+    solution
+        .derivation
+        .extend(integral_law(oscillator, &force, &solution)?);
     note_even_part_last(&mut solution);
     Ok(solution)
 }

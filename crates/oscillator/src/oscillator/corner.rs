@@ -1,22 +1,26 @@
-//! Corners whose side at rest is decided by the sign of a letter: `max(0, d + x)`, a contact pressed together by `d`, and `H(x - xc)`, a
-//! barrier that is `xc` away.
+//! Corners whose side at rest is decided by the sign of a letter: `max(0, d + x)`, a contact
+//! pressed together by `d`, and `H(x - xc)`, a barrier that is `xc` away.
 //!
 //! ```text
 //! w(x) = w_0 + ...,  w_0 one term in letters:   for w_0 > 0 near rest   H(w) = 1, sgn(w) = 1, abs(w) = w, max(0, w) = w
 //! ```
 //!
-//! In: a force. Out: the force as it is near rest where the letters are positive, and what was taken for that, which whoever uses it has
-//! to say.
+//! In: a force. Out: the force as it is near rest where the letters are positive, and what was
+//! taken for that, which whoever uses it has to say.
 
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::solution::note::CornerSide;
 use crate::symbol::Symbol;
 
-/// A force with the side of each of these corners in its place, and the corners; those that no letter decides stay.
+/// A force with the side of each of these corners in its place, and the corners; those that no
+/// letter decides stay.
 ///
 /// # Errors
 /// A step of algebra failed.
-pub(crate) fn beside_corners(force: &Expr, coordinate: Symbol) -> Result<(Expr, Vec<CornerSide>), ExprError> {
+pub(crate) fn beside_corners(
+    force: &Expr,
+    coordinate: Symbol,
+) -> Result<(Expr, Vec<CornerSide>), ExprError> {
     let own = [coordinate, coordinate.derivative()];
     let mut sides: Vec<CornerSide> = Vec::new();
     let beside = force.fold(|expr, children: &[Expr]| {
@@ -38,14 +42,18 @@ pub(crate) fn beside_corners(force: &Expr, coordinate: Symbol) -> Result<(Expr, 
     Ok((beside, sides))
 }
 
-/// The force as an expansion about rest takes it: with the sides of its corners, where letters decide them and where something acts on
-/// that side.
+/// The force as an expansion about rest takes it: with the sides of its corners, where letters
+/// decide them and where something acts on that side.
 ///
 /// # Errors
 /// As [`beside_corners`].
-pub(crate) fn near_rest(force: &Expr, coordinate: Symbol) -> Result<(Expr, Vec<CornerSide>), ExprError> {
+pub(crate) fn near_rest(
+    force: &Expr,
+    coordinate: Symbol,
+) -> Result<(Expr, Vec<CornerSide>), ExprError> {
     let (beside, sides) = beside_corners(force, coordinate)?;
-    // A barrier that is away at rest is no part of any expansion: what is left would be another equation.
+    // A barrier that is away at rest is no part of any expansion: what is left would be another
+    // equation.
     match sides.iter().any(|side| side.taken.is_zero()) {
         true => Ok((force.clone(), vec![])),
         false => Ok((beside, sides)),
@@ -102,7 +110,10 @@ mod tests {
         ] {
             let (beside, sides) = beside_corners(&force.parse().unwrap(), "x".into()).unwrap();
             let expected: Expr = expected.parse().unwrap();
-            assert!((&beside - &expected).expand().unwrap().is_zero(), "{force}: {beside}");
+            assert!(
+                (&beside - &expected).expand().unwrap().is_zero(),
+                "{force}: {beside}"
+            );
             assert_eq!(sides[0].positive, positive.parse().unwrap(), "{force}");
         }
         for force in [

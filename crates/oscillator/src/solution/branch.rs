@@ -1,8 +1,10 @@
-//! The branch of a relation between frequency and amplitude that starts at the linear frequency, followed in the amplitude.
+//! The branch of a relation between frequency and amplitude that starts at the linear frequency,
+//! followed in the amplitude.
 //!
-//! References: E. L. Allgower, K. Georg, *Introduction to Numerical Continuation Methods*, SIAM 2003, chapter 2 (prediction
-//! along the tangent, correction by Newton's iteration); S. Smale, *Newton's method estimates from data at one point*, 1986
-//! (how far other roots are, from the derivatives at one root).
+//! References: E. L. Allgower, K. Georg, *Introduction to Numerical Continuation Methods*, SIAM
+//! 2003, chapter 2 (prediction along the tangent, correction by Newton's iteration); S.
+//! Smale, *Newton's method estimates from data at one point*, 1986 (how far other roots are, from the
+//! derivatives at one root).
 //!
 //! ```text
 //! F(z, A) = sum_i c_i A^(p_i) z^(q_i) = 0,   z = omega^2,   d ln z/d ln A = - sum p_i c_i A^(p_i) z^(q_i) / sum q_i c_i A^(p_i) z^(q_i)
@@ -11,16 +13,18 @@
 //! no other root of F = sum_k b_k (u - 1)^k within 1/(2 gamma) of u = 1,   gamma = max_k |b_k/b_1|^(1/(k - 1))
 //! ```
 //!
-//! Where omega^2 is negative at small amplitudes, about an unstable equilibrium that the motions pass, there is no branch from
-//! rest. The root is then followed at one amplitude from that of the first order, all beyond which is made small and let in again:
+//! Where omega^2 is negative at small amplitudes, about an unstable equilibrium that the motions
+//! pass, there is no branch from rest. The root is then followed at one amplitude from that of the
+//! first order, all beyond which is made small and let in again:
 //!
 //! ```text
 //! F(z, d) = c_n z^n + c_(n-1) z^(n-1) + d c_(n-2) z^(n-2) + d^2 c_(n-3) z^(n-3) + ... = 0,   d = 0 ... 1
 //! ```
 //!
-//! Steps are taken in `ln A`, and a step counts only where the correction is small beside the distance to all other roots, at
-//! its end and, along the tangent there, back at its beginning: a prediction alone may fall beside another root by chance.
-//! Mantissa and binary exponent are kept apart ([`Scaled`]): at order 20 the terms span far more than the range of doubles.
+//! Steps are taken in `ln A`, and a step counts only where the correction is small beside the
+//! distance to all other roots, at its end and, along the tangent there, back at its beginning: a
+//! prediction alone may fall beside another root by chance. Mantissa and binary exponent are kept
+//! apart ([`Scaled`]): at order 20 the terms span far more than the range of doubles.
 
 use crate::exact::scaled::Scaled;
 
@@ -41,16 +45,21 @@ pub enum Branch {
         /// Its relative rounding error.
         rounding: f64,
     },
-    /// The branch goes no farther than this amplitude: it turns back there, or its frequency reaches zero.
+    /// The branch goes no farther than this amplitude: it turns back there, or its frequency
+    /// reaches zero.
     Ends(f64),
     /// Rest is unstable, and no positive root at this amplitude continues that of the first order.
     NoneOfFirstOrder,
 }
 
-/// Follows the branch from rest to `amplitude`, with coefficients good to `precision`, relatively; `None` where it has no
-/// start, or a value is not finite.
+/// Follows the branch from rest to `amplitude`, with coefficients good to `precision`, relatively;
+/// `None` where it has no start, or a value is not finite.
 pub(super) fn follow(terms: &[Term], amplitude: f64, precision: f64) -> Option<Branch> {
-    if terms.iter().any(|term| !term.coefficient.mantissa.is_finite()) || !amplitude.is_finite() {
+    if terms
+        .iter()
+        .any(|term| !term.coefficient.mantissa.is_finite())
+        || !amplitude.is_finite()
+    {
         return None;
     }
     if rest_is_unstable(terms) {
@@ -70,8 +79,9 @@ pub(super) fn follow(terms: &[Term], amplitude: f64, precision: f64) -> Option<B
     follow_up(terms, amplitude, precision)
 }
 
-/// Whether omega^2 is negative at small amplitudes, about an unstable equilibrium that the motions pass.
-/// In `z^n - (omega0^2 + c A^2 + ...) z^(n-1) + ...` what stands second is the force of one term.
+/// Whether omega^2 is negative at small amplitudes, about an unstable equilibrium that the motions
+/// pass. In `z^n - (omega0^2 + c A^2 + ...) z^(n-1) + ...` what stands second is the force of one
+/// term.
 fn rest_is_unstable(terms: &[Term]) -> bool {
     let highest = terms.iter().map(|term| term.frequency).max().unwrap_or(0);
     let lowest = |frequency: i32| {
@@ -145,8 +155,8 @@ struct Relation<'a> {
 }
 
 impl Relation<'_> {
-    /// Every term at an amplitude and `z = u 2^k`, as what stands before `u^q`, all in one unit in which the largest is of
-    /// order one.
+    /// Every term at an amplitude and `z = u 2^k`, as what stands before `u^q`, all in one unit in
+    /// which the largest is of order one.
     fn values(&self, amplitude: Scaled, k: i64) -> Vec<f64> {
         let value = |term: &Term| {
             let value = term.coefficient.product(amplitude.power(term.amplitude));
@@ -163,7 +173,8 @@ impl Relation<'_> {
 
     /// The polynomial in `u`, lowest power first.
     fn polynomial(&self, values: &[f64]) -> Vec<f64> {
-        let mut coefficients = vec![0.0; usize::try_from(self.highest).map_or(0, |highest| highest + 1)];
+        let mut coefficients =
+            vec![0.0; usize::try_from(self.highest).map_or(0, |highest| highest + 1)];
         for (term, value) in self.terms.iter().zip(values) {
             if let Some(entry) = usize::try_from(term.frequency)
                 .ok()
@@ -175,16 +186,21 @@ impl Relation<'_> {
         coefficients
     }
 
-    /// An amplitude, not above the one asked for, at which the lowest terms alone decide, and the root there.
+    /// An amplitude, not above the one asked for, at which the lowest terms alone decide, and the
+    /// root there.
     fn start(&self, amplitude: Scaled) -> Option<(Scaled, Scaled)> {
-        /// What the other terms may add: of the isolation of the root by Rouche's theorem nothing is lost.
+        /// What the other terms may add: of the isolation of the root by Rouche's theorem nothing
+        /// is lost.
         const SMALL: f64 = 1e-3;
         const HALVINGS: usize = 10_000;
         let exponent = |term: &Term| {
             let below = self.highest - term.frequency;
             (below > 0).then(|| f64::from(term.amplitude) / f64::from(below))
         };
-        let used = self.terms.iter().filter(|term| term.coefficient.mantissa != 0.0);
+        let used = self
+            .terms
+            .iter()
+            .filter(|term| term.coefficient.mantissa != 0.0);
         let growth = used.filter_map(exponent).fold(f64::INFINITY, f64::min);
         let decides = |term: &Term| match exponent(term) {
             Some(own) => own == growth,
@@ -215,7 +231,11 @@ impl Relation<'_> {
                 }
             }
             if others <= SMALL * leading {
-                let z = if others == 0.0 { z } else { self.newton(at, z)? };
+                let z = if others == 0.0 {
+                    z
+                } else {
+                    self.newton(at, z)?
+                };
                 return Some((at, z));
             }
             at.exponent -= 1;
@@ -229,7 +249,10 @@ impl Relation<'_> {
             let value = term.coefficient.product(amplitude.power(term.amplitude));
             value.logarithm()
         };
-        let leading = self.terms.iter().find(|term| term.frequency == self.highest)?;
+        let leading = self
+            .terms
+            .iter()
+            .find(|term| term.frequency == self.highest)?;
         let bound = self
             .terms
             .iter()
@@ -256,7 +279,9 @@ impl Relation<'_> {
         let mut u = start.mantissa;
         let mut last = f64::INFINITY;
         for _ in 0..ITERATIONS {
-            let horner = |(value, slope): (f64, f64), coefficient: &f64| (value * u + coefficient, slope * u + value);
+            let horner = |(value, slope): (f64, f64), coefficient: &f64| {
+                (value * u + coefficient, slope * u + value)
+            };
             let (value, slope) = polynomial.iter().rev().fold((0.0, 0.0), horner);
             if value == 0.0 {
                 last = 0.0;
@@ -298,7 +323,8 @@ impl Relation<'_> {
         Some(z.product(Scaled::new((slope * step).exp())))
     }
 
-    /// The root nearest to a prediction, where the way to it is short beside the distance to any other root.
+    /// The root nearest to a prediction, where the way to it is short beside the distance to any
+    /// other root.
     fn corrected(&self, amplitude: Scaled, predicted: Scaled) -> Option<Scaled> {
         let root = self.newton(amplitude, predicted)?;
         self.is_near(amplitude, predicted, root).then_some(root)
@@ -346,8 +372,8 @@ impl Relation<'_> {
 mod tests {
     use super::*;
 
-    /// `(z - 1 - s)(z - s/4)(z - s/9)` with `s = A^2`: the branch of the linear frequency is 1 + s, and the others pass close
-    /// to what it was at smaller amplitudes.
+    /// `(z - 1 - s)(z - s/4)(z - s/9)` with `s = A^2`: the branch of the linear frequency is 1 + s,
+    /// and the others pass close to what it was at smaller amplitudes.
     fn three_branches() -> Vec<Term> {
         let term = |coefficient: f64, amplitude, frequency| Term {
             coefficient: Scaled::new(coefficient),
@@ -366,8 +392,9 @@ mod tests {
         ]
     }
 
-    /// `z (z - s) + d q = 0` about an unstable rest, `s = A^2 (1 - A^2/20)^2 - 1`: motions between two separatrices and outside of a third
-    /// have their own roots, each that of the first order as it is changed by `d`.
+    /// `z (z - s) + d q = 0` about an unstable rest, `s = A^2 (1 - A^2/20)^2 - 1`: motions between
+    /// two separatrices and outside of a third have their own roots, each that of the first order
+    /// as it is changed by `d`.
     #[test]
     fn the_branch_above_an_unstable_rest_continues_the_first_order() {
         let term = |coefficient: f64, amplitude, frequency| Term {
@@ -392,7 +419,9 @@ mod tests {
                     let expected = 0.5 * (first + under.sqrt());
                     assert!((squared / expected - 1.0).abs() < 1e-10, "{amplitude}");
                 }
-                Some(Branch::NoneOfFirstOrder) => assert!(first <= 0.0 || under <= 0.0, "{amplitude}"),
+                Some(Branch::NoneOfFirstOrder) => {
+                    assert!(first <= 0.0 || under <= 0.0, "{amplitude}")
+                }
                 other => panic!("{amplitude}: {other:?}"),
             }
         }
@@ -426,13 +455,18 @@ mod tests {
             matches!(found, Some(Branch::At { squared, .. }) if (squared - upper).abs() < 1e-14),
             "{found:?} {upper}"
         );
-        assert!(matches!(follow(&circle, 3.0, f64::EPSILON), Some(Branch::Ends(a)) if (a - 0.5).abs() < 1e-8));
-        assert!(matches!(follow(&circle, -3.0, f64::EPSILON), Some(Branch::Ends(a)) if (a + 0.5).abs() < 1e-8));
+        assert!(
+            matches!(follow(&circle, 3.0, f64::EPSILON), Some(Branch::Ends(a)) if (a - 0.5).abs() < 1e-8)
+        );
+        assert!(
+            matches!(follow(&circle, -3.0, f64::EPSILON), Some(Branch::Ends(a)) if (a + 0.5).abs() < 1e-8)
+        );
     }
 
     #[test]
     fn a_bend_is_not_cut_short_onto_another_root() {
-        // z^2 - 2 L z + L^2 - D/4 = 0 of order 2 for x - 1.9 x^3 + 1.17 x^5: the roots L +- sqrt(D)/2 come close and part again.
+        // z^2 - 2 L z + L^2 - D/4 = 0 of order 2 for x - 1.9 x^3 + 1.17 x^5: the roots L +-
+        // sqrt(D)/2 come close and part again.
         let l = |s: f64| 0.5 - 57.0 / 80.0 * s + 117.0 / 320.0 * s * s;
         let d = [
             1.0,
@@ -469,7 +503,8 @@ mod tests {
 
     #[test]
     fn rounding_says_what_rounded_coefficients_leave() {
-        // z - (1 - s + s^2/3) by its terms, s = A^2: the root itself, against coefficients changed in the twelfth digit.
+        // z - (1 - s + s^2/3) by its terms, s = A^2: the root itself, against coefficients changed
+        // in the twelfth digit.
         let law = |factor: f64| {
             let term = |coefficient: f64, amplitude, frequency| Term {
                 coefficient: Scaled::new(coefficient),
@@ -489,6 +524,9 @@ mod tests {
         };
         let ((exact, rounding), (changed, _)) = (at(0.0), at(1e-12));
         let moved = (changed / exact - 1.0).abs();
-        assert!(moved < 5.0 * rounding && rounding < 100.0 * moved, "{moved} {rounding}");
+        assert!(
+            moved < 5.0 * rounding && rounding < 100.0 * moved,
+            "{moved} {rounding}"
+        );
     }
 }

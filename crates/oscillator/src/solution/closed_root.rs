@@ -1,8 +1,10 @@
 //! Whether the closed root of a relation is the frequency wherever it is real and positive.
 //!
-//! The frequency is the root that continues the linear one from amplitude zero. A relation that is quadratic in `z = omega^2`,
-//! `a z^2 + b z + c = 0`, has it as `z = (-b + sqrt(b^2 - 4 a c))/(2 a)`, up to the amplitude at which the root turns back or reaches
-//! zero. Where the formula has a positive value again beyond, that belongs to no motion which comes from rest.
+//! The frequency is the root that continues the linear one from amplitude zero. A relation that is
+//! quadratic in `z = omega^2`, `a z^2 + b z + c = 0`, has it as
+//! `z = (-b + sqrt(b^2 - 4 a c))/(2 a)`, up to the amplitude at which the root turns back or
+//! reaches zero. Where the formula has a positive value again beyond, that belongs to no motion
+//! which comes from rest.
 //!
 //! ```text
 //! u = z/z(0):   alpha(m) u^2 - beta(m) u + gamma(m) = 0,   alpha(0) = beta(0) = 1,   m the one product of powers that all depend on
@@ -16,10 +18,11 @@ use crate::exact::real_roots::positive_roots;
 use crate::exact::{Polynomial, Rational};
 use crate::symbol::Symbol;
 
-/// Whether the root with the plus sign of a relation that is quadratic in omega^2 is the branch from rest wherever it is positive; false
-/// where that cannot be told.
+/// Whether the root with the plus sign of a relation that is quadratic in omega^2 is the branch
+/// from rest wherever it is positive; false where that cannot be told.
 pub(super) fn is_the_branch(relation: &Polynomial, amplitude: Symbol) -> bool {
-    normalised(relation, amplitude).is_some_and(|parts| [1, -1].iter().all(|sign| ends_for_good(&parts, *sign)))
+    normalised(relation, amplitude)
+        .is_some_and(|parts| [1, -1].iter().all(|sign| ends_for_good(&parts, *sign)))
 }
 
 /// `alpha`, `beta` and `gamma`, lowest power of `m` first.
@@ -36,7 +39,9 @@ fn normalised(relation: &Polynomial, amplitude: Symbol) -> Option<[Vec<Rational>
         parts[place].add_term(monomial.without(omega), number.clone());
     }
     let at_rest = |part: &Polynomial| {
-        let mut free = part.terms().filter(|(monomial, _)| monomial.exponent(amplitude) == 0);
+        let mut free = part
+            .terms()
+            .filter(|(monomial, _)| monomial.exponent(amplitude) == 0);
         let (monomial, number) = free.next()?;
         free.next()
             .is_none()
@@ -48,12 +53,18 @@ fn normalised(relation: &Polynomial, amplitude: Symbol) -> Option<[Vec<Rational>
         &middle.1 * &middle.1 / &leading.1,
     );
     let factors = [leading, middle, last];
-    let scaled = parts.iter().zip(&factors).map(|(part, (monomial, number))| {
-        let part = part.times_monomial(monomial);
-        part.map(|own| own * number)
-    });
+    let scaled = parts
+        .iter()
+        .zip(&factors)
+        .map(|(part, (monomial, number))| {
+            let part = part.times_monomial(monomial);
+            part.map(|own| own * number)
+        });
     let scaled: Vec<Polynomial> = scaled.collect();
-    let of_amplitude = scaled.iter().flat_map(Polynomial::terms).map(|(monomial, _)| monomial);
+    let of_amplitude = scaled
+        .iter()
+        .flat_map(Polynomial::terms)
+        .map(|(monomial, _)| monomial);
     // The least power of the amplitude is that of m, or all are powers of its root: both are tried.
     let least = of_amplitude
         .filter(|monomial| monomial.exponent(amplitude) > 0)
@@ -67,7 +78,11 @@ fn normalised(relation: &Polynomial, amplitude: Symbol) -> Option<[Vec<Rational>
 }
 
 /// A polynomial as one in powers of a monomial.
-fn in_powers_of(polynomial: &Polynomial, base: &Monomial, amplitude: Symbol) -> Option<Vec<Rational>> {
+fn in_powers_of(
+    polynomial: &Polynomial,
+    base: &Monomial,
+    amplitude: Symbol,
+) -> Option<Vec<Rational>> {
     let mut coefficients: Vec<Rational> = vec![];
     for (monomial, number) in polynomial.terms() {
         let power = monomial.exponent(amplitude) / base.exponent(amplitude);
@@ -127,7 +142,11 @@ fn ends_for_good([alpha, beta, gamma]: &[Vec<Rational>; 3], sign: i64) -> bool {
         .windows(2)
         .map(|pair| 0.5 * (pair[0] + pair[1]))
         .chain([farthest]);
-    let value = |part: &[Rational], m: f64| part.iter().rev().fold(0.0, |sum, number| sum * m + to_f64(number));
+    let value = |part: &[Rational], m: f64| {
+        part.iter()
+            .rev()
+            .fold(0.0, |sum, number| sum * m + to_f64(number))
+    };
     let is_positive = |m: f64| {
         let root = value(&discriminant, m).sqrt();
         (value(&beta, m) + root) / value(&alpha, m) > 0.0
@@ -154,11 +173,16 @@ mod tests {
     #[test]
     fn a_root_that_comes_back_is_told_from_one_that_ends() {
         // Real on both sides of -0.94 and -2.26, beyond which it is negative.
-        assert!(of("omega^4 - omega^2 - 3*eps*omega^2*A^2/4 + 3*eps^2*A^4/128"));
-        assert!(of("omega^4 - k*omega^2 - 3*eps*omega^2*A^2/4 + 3*eps^2*A^4/128"));
+        assert!(of(
+            "omega^4 - omega^2 - 3*eps*omega^2*A^2/4 + 3*eps^2*A^4/128"
+        ));
+        assert!(of(
+            "omega^4 - k*omega^2 - 3*eps*omega^2*A^2/4 + 3*eps^2*A^4/128"
+        ));
         // The circle z^2 - z + A^2 = 0 turns back for good.
         assert!(of("omega^4 - omega^2 + A^2"));
-        // z^2 - z + (A^2 - A^4)/3: the discriminant 1 - 4*(A^2 - A^4)/3 is positive throughout, at 4 in place of 4/3 it is not.
+        // z^2 - z + (A^2 - A^4)/3: the discriminant 1 - 4*(A^2 - A^4)/3 is positive throughout, at
+        // 4 in place of 4/3 it is not.
         assert!(of("omega^4 - omega^2 + (A^2 - A^4)/3"));
         assert!(!of("omega^4 - omega^2 + 2*(A^2 - A^4)"));
         // Two products of powers.

@@ -15,7 +15,8 @@ use crate::symbol::Symbol;
 /// What the coefficients of a long series say of the function that it is of.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Convergence {
-    /// What the series runs in: a power of the small parameter times whatever enters in step with it, `mu^2`, `eps*A^2`.
+    /// What the series runs in: a power of the small parameter times whatever enters in step with
+    /// it, `mu^2`, `eps*A^2`.
     pub variable: Monomial,
     /// The highest power of it in the series.
     pub highest: usize,
@@ -29,7 +30,8 @@ impl Convergence {
         Expr::from(&Polynomial::term(self.variable.clone(), Rational::one())).to_string()
     }
 
-    /// The one symbol in the variable and the size up to which the series converges in it, where there is but one.
+    /// The one symbol in the variable and the size up to which the series converges in it, where
+    /// there is but one.
     pub fn in_symbol(&self) -> Option<(Symbol, Estimate)> {
         let [(symbol, power)] = *self.variable.factors() else {
             return None;

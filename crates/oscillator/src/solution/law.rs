@@ -9,8 +9,8 @@ use crate::expr::Expr;
 use crate::symbol::Symbol;
 use crate::symbol::letters::FREQUENCY;
 
-/// What ties the frequency to the amplitude. Polynomials and expressions are in the parameters of the equation, the amplitude
-/// symbol and the symbols of the definitions of the solution.
+/// What ties the frequency to the amplitude. Polynomials and expressions are in the parameters of
+/// the equation, the amplitude symbol and the symbols of the definitions of the solution.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Law {
     /// omega^2 as a polynomial, and omega itself beside it where the method expands both.
@@ -22,7 +22,8 @@ pub enum Law {
     },
     /// omega alone as a polynomial.
     Frequency(Polynomial),
-    /// A polynomial in even powers of `omega`, equal to zero, and its root where that can be written down.
+    /// A polynomial in even powers of `omega`, equal to zero, and its root where that can be
+    /// written down.
     Relation {
         /// Zero on the branch that starts at the linear frequency.
         relation: Polynomial,
@@ -179,7 +180,9 @@ impl Law {
                 relation,
                 root: Some(Root::Closed(closed(form))),
             },
-            Self::Quadrature(lines) => Self::Quadrature(lines.iter().map(|line| line.with_numbers(change)).collect()),
+            Self::Quadrature(lines) => {
+                Self::Quadrature(lines.iter().map(|line| line.with_numbers(change)).collect())
+            }
             Self::System(system) => Self::System(System {
                 equations: system.equations.iter().map(changed).collect(),
                 ..system
@@ -192,17 +195,32 @@ impl Law {
     #[must_use]
     pub(crate) fn with_phase(self, name: Symbol) -> Self {
         match self {
-            Self::Quadrature(lines) => Self::Quadrature(lines.into_iter().map(|line| line.with_phase(name)).collect()),
+            Self::Quadrature(lines) => Self::Quadrature(
+                lines
+                    .into_iter()
+                    .map(|line| line.with_phase(name))
+                    .collect(),
+            ),
             other => other,
         }
     }
 
-    /// Whether a symbol stands in it; integrals are taken along the motion, so the amplitude stands in each.
+    /// Whether a symbol stands in it; integrals are taken along the motion, so the amplitude stands
+    /// in each.
     pub fn contains(&self, symbol: Symbol) -> bool {
-        let equations = self.system().into_iter().flat_map(|system| &system.equations);
-        let forms = self.closed_form().map(|form| &form.value).into_iter().chain(equations);
+        let equations = self
+            .system()
+            .into_iter()
+            .flat_map(|system| &system.equations);
+        let forms = self
+            .closed_form()
+            .map(|form| &form.value)
+            .into_iter()
+            .chain(equations);
         self.quadrature().is_some()
-            || self.polynomials().any(|law| law.symbols().contains(&symbol))
+            || self
+                .polynomials()
+                .any(|law| law.symbols().contains(&symbol))
             || forms.into_iter().any(|form| form.contains(symbol))
     }
 }
@@ -225,7 +243,8 @@ pub enum Shown<'a> {
 }
 
 impl Law {
-    /// All forms of it that a report of one answer shows, in their order. A relation that is solved by a polynomial is left out.
+    /// All forms of it that a report of one answer shows, in their order. A relation that is solved
+    /// by a polynomial is left out.
     pub fn shown(&self) -> Vec<Shown<'_>> {
         let shown = self.in_one_line();
         let beside = match self {
@@ -256,7 +275,10 @@ impl Law {
                 root: Some(Root::Closed(form)),
                 ..
             } => Shown::Closed(form),
-            Self::Relation { relation, root: None } => Shown::Relation(relation),
+            Self::Relation {
+                relation,
+                root: None,
+            } => Shown::Relation(relation),
             Self::Quadrature(lines) => Shown::Quadrature(lines),
             Self::System(system) => Shown::System(system),
         }
@@ -267,7 +289,9 @@ impl Shown<'_> {
     /// The symbols of a formula, those of its integrals included; of a system of equations none.
     pub fn symbols(&self) -> BTreeSet<Symbol> {
         match self {
-            Self::Squared(law) | Self::Frequency(law) | Self::Relation(law) => law.symbols().into_iter().collect(),
+            Self::Squared(law) | Self::Frequency(law) | Self::Relation(law) => {
+                law.symbols().into_iter().collect()
+            }
             Self::Closed(form) => form.value.symbols(),
             Self::Quadrature(lines) => lines.iter().flat_map(Line::symbols).collect(),
             Self::System(_) => BTreeSet::new(),

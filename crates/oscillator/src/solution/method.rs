@@ -44,7 +44,8 @@ pub enum Method {
 pub enum Counts {
     /// Powers of the small parameter.
     Powers,
-    /// Powers of a bookkeeping parameter that is one in the end; everything stands in units of omega.
+    /// Powers of a bookkeeping parameter that is one in the end; everything stands in units of
+    /// omega.
     PowersOfBookkeeping,
     /// The first frequency and its corrections.
     Corrections,
@@ -80,7 +81,8 @@ impl Method {
         Self::Exact,
     ];
 
-    /// The name on the command line and in JSON, the name in running text, and what the order counts.
+    /// The name on the command line and in JSON, the name in running text, and what the order
+    /// counts.
     fn words(self) -> (&'static str, &'static str, Counts) {
         match self {
             Self::LindstedtPoincare => ("lindstedt-poincare", "Lindstedt-Poincare", Counts::Powers),
@@ -89,8 +91,16 @@ impl Method {
                 "Homotopy perturbation",
                 Counts::PowersOfBookkeeping,
             ),
-            Self::HomotopyAnalysis => ("homotopy-analysis", "Homotopy analysis", Counts::Corrections),
-            Self::IterationPerturbation => ("iteration-perturbation", "Iteration perturbation", Counts::Passes),
+            Self::HomotopyAnalysis => (
+                "homotopy-analysis",
+                "Homotopy analysis",
+                Counts::Corrections,
+            ),
+            Self::IterationPerturbation => (
+                "iteration-perturbation",
+                "Iteration perturbation",
+                Counts::Passes,
+            ),
             Self::ParameterExpansion => (
                 "parameter-expansion",
                 "Parameter expansion",
@@ -105,11 +115,19 @@ impl Method {
                 Counts::Nothing,
             ),
             Self::Hamiltonian => ("hamiltonian", "Hamiltonian approach", Counts::Nothing),
-            Self::VariationalIteration => ("variational-iteration", "Variational iteration", Counts::Nothing),
+            Self::VariationalIteration => (
+                "variational-iteration",
+                "Variational iteration",
+                Counts::Nothing,
+            ),
             Self::FrequencyFormula => ("frequency-formula", "Frequency formula", Counts::Nothing),
             Self::Averaging => ("averaging", "Averaging", Counts::Powers),
             Self::Pade => ("pade", "Pade approximant", Counts::Degrees(2)),
-            Self::HermitePade => ("hermite-pade", "Hermite-Pade approximant", Counts::Degrees(3)),
+            Self::HermitePade => (
+                "hermite-pade",
+                "Hermite-Pade approximant",
+                Counts::Degrees(3),
+            ),
             Self::MultipleScales => ("multiple-scales", "Multiple scales", Counts::Powers),
             Self::Exact => ("exact", "Exact frequency", Counts::Nothing),
         }

@@ -1,8 +1,9 @@
-//! The slow equations of amplitude and phase, where a motion is no longer periodic: damped, growing, on its way to a limit
-//! cycle, or driven.
+//! The slow equations of amplitude and phase, where a motion is no longer periodic: damped,
+//! growing, on its way to a limit cycle, or driven.
 //!
-//! References: N. N. Bogoliubov, Y. A. Mitropolsky, *Asymptotic Methods in the Theory of Non-Linear Oscillations*, Gordon and
-//! Breach 1961, chapter 1; A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapters 3 and 4.
+//! References: N. N. Bogoliubov, Y. A. Mitropolsky, *Asymptotic Methods in the Theory of Non-Linear
+//! Oscillations*, Gordon and Breach 1961, chapter 1; A. H. Nayfeh, D. T. Mook, *Nonlinear
+//! Oscillations*, Wiley 1979, chapters 3 and 4.
 //!
 //! ```text
 //! free      x = a cos(theta) + ...,  theta = psi,                       a' = f(a),       psi' = g(a), near omega0
@@ -24,9 +25,11 @@ use crate::symbol::{Symbol, fresh};
 pub struct Modulation {
     /// The symbol of the amplitude, that of the convention of the solution.
     pub amplitude: Symbol,
-    /// The symbol of the phase: the whole phase of a free motion, the slow one behind the force of a driven motion.
+    /// The symbol of the phase: the whole phase of a free motion, the slow one behind the force of
+    /// a driven motion.
     pub phase: Symbol,
-    /// `a'`, in the amplitude, the phase of a driven motion, and the parameters and definitions of the solution.
+    /// `a'`, in the amplitude, the phase of a driven motion, and the parameters and definitions of
+    /// the solution.
     pub amplitude_rate: Expr,
     /// `psi'`, likewise.
     pub phase_rate: Expr,
@@ -38,13 +41,16 @@ pub struct Modulation {
     pub release: Option<Release>,
     /// The motion from a start in closed form, where there is one.
     pub transient: Option<Transient>,
-    /// The amplitudes other than zero that stay, smallest first, each with its stability, where they can be written down.
+    /// The amplitudes other than zero that stay, smallest first, each with its stability, where
+    /// they can be written down.
     pub steady: Vec<LeadingCycle>,
-    /// Where the displacement of the solution is that on a limit cycle: the motion in the amplitude.
+    /// Where the displacement of the solution is that on a limit cycle: the motion in the
+    /// amplitude.
     pub motion: Option<FourierSeries<Polynomials>>,
 }
 
-/// A driving frequency near a rational multiple of the linear frequency, `n Omega = m omega0 + sigma`.
+/// A driving frequency near a rational multiple of the linear frequency,
+/// `n Omega = m omega0 + sigma`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resonance {
     /// The driving frequency: a symbol, or a number.
@@ -57,7 +63,8 @@ pub struct Resonance {
     pub detuning: Definition,
 }
 
-/// Amplitude and phase at `t = 0` of a motion with `x(0) = A` about the equilibrium, `x'(0) = 0`, to the order of the equations.
+/// Amplitude and phase at `t = 0` of a motion with `x(0) = A` about the equilibrium, `x'(0) = 0`,
+/// to the order of the equations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Release {
     /// `a(0)`, in `A` and the parameters.
@@ -75,8 +82,8 @@ pub struct Transient {
     pub amplitude: Expr,
     /// `psi(t)`, where that is closed as well.
     pub phase: Option<Expr>,
-    /// The time from which on the amplitude is zero, or at which it grows without bound; `None` where the formula holds for all
-    /// times.
+    /// The time from which on the amplitude is zero, or at which it grows without bound; `None`
+    /// where the formula holds for all times.
     pub ends: Option<Expr>,
 }
 
@@ -112,7 +119,8 @@ impl Modulation {
 }
 
 impl Solution {
-    /// The motion from a start, where this is that on the limit cycle on which it may end; `None` for any other.
+    /// The motion from a start, where this is that on the limit cycle on which it may end; `None`
+    /// for any other.
     pub fn off_cycle(&self) -> Option<Self> {
         self.limit_cycle.as_ref()?;
         let modulation = self.modulation.as_ref()?;
@@ -127,8 +135,8 @@ impl Solution {
         })
     }
 
-    /// The periodic motion at an amplitude that stays: the smallest that attracts for small positive parameters, else the smallest;
-    /// `None` where none is known.
+    /// The periodic motion at an amplitude that stays: the smallest that attracts for small
+    /// positive parameters, else the smallest; `None` where none is known.
     pub fn on_cycle(&self) -> Option<Self> {
         let modulation = self
             .modulation

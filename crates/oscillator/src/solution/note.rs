@@ -1,4 +1,5 @@
-//! What an answer says of itself beside its formulas: how it was cut, what was left out, where it holds.
+//! What an answer says of itself beside its formulas: how it was cut, what was left out, where it
+//! holds.
 
 use std::fmt;
 
@@ -20,20 +21,23 @@ pub enum Note {
     FirstStep(FirstStep),
     /// A one-term motion whose equation is met at one instant.
     Collocated(Instant),
-    /// A parameter that is written with another name than the one typed, which the answer uses for something else.
+    /// A parameter that is written with another name than the one typed, which the answer uses for
+    /// something else.
     Renamed {
         /// The name in the equation as it was typed.
         typed: Symbol,
         /// The name in the answer.
         written: Symbol,
     },
-    /// A letter that the answer writes otherwise than usual, since the equation has the usual one for something of its own.
+    /// A letter that the answer writes otherwise than usual, since the equation has the usual one
+    /// for something of its own.
     OtherLetter {
         /// The usual letter: `A`, `a` or `omega`.
         usual: Symbol,
         /// The letter in this answer.
         written: Symbol,
-        /// Whether the coordinate of the equation has the usual letter; otherwise a parameter has it.
+        /// Whether the coordinate of the equation has the usual letter; otherwise a parameter has
+        /// it.
         is_coordinate: bool,
     },
     /// A parameter whose name looks like something else.
@@ -109,7 +113,8 @@ pub enum Note {
     },
     /// The real zeros of the denominator of a quotient.
     Poles(Poles),
-    /// How the root of a quadratic equation goes from rest on, where its formula alone does not say so.
+    /// How the root of a quadratic equation goes from rest on, where its formula alone does not say
+    /// so.
     Followed(FollowedRoot),
     /// A resummation has the motion of the series to its first correction.
     MotionOfSeries,
@@ -134,7 +139,8 @@ pub enum Note {
         resonance: (u32, u32),
         /// Whether the drive is in a coefficient.
         parametric: bool,
-        /// Of several drives the ratio of the one in resonance to omega0; `None` where only sums and differences of them are.
+        /// Of several drives the ratio of the one in resonance to omega0; `None` where only sums
+        /// and differences of them are.
         nearest: Option<(u32, u32)>,
         /// What counts as small.
         small: Vec<Expr>,
@@ -171,7 +177,8 @@ pub enum Note {
         /// What stands before the sign of the velocity.
         size: Expr,
     },
-    /// An average along the true motion without damping, whose shape is the same at every amplitude.
+    /// An average along the true motion without damping, whose shape is the same at every
+    /// amplitude.
     AlongTrueMotion {
         /// The last harmonic that is written.
         harmonic: usize,
@@ -210,7 +217,8 @@ pub enum Note {
         /// Why it does not answer.
         reason: String,
     },
-    /// An expansion in the amplitude where letters might have been small, for what quadratic terms do.
+    /// An expansion in the amplitude where letters might have been small, for what quadratic terms
+    /// do.
     QuadraticTerms,
     /// A first order without what quadratic terms do.
     QuadraticTermsLeftOut,
@@ -270,14 +278,16 @@ pub enum Cut {
         bookkeeping: Symbol,
         /// The highest power kept.
         order: u32,
-        /// The linear frequency, where the root starts; `None` where rest is unstable, and it starts at the first order.
+        /// The linear frequency, where the root starts; `None` where rest is unstable, and it
+        /// starts at the first order.
         linear_frequency: Option<Symbol>,
     },
     /// A relation after so many passes of an iteration.
     Passes {
         /// How many.
         passes: u32,
-        /// The linear frequency, where the root starts; `None` where rest is unstable, and it starts at the first order.
+        /// The linear frequency, where the root starts; `None` where rest is unstable, and it
+        /// starts at the first order.
         linear_frequency: Option<Symbol>,
     },
     /// After so many corrections of the first frequency.
@@ -309,7 +319,8 @@ pub enum Instant {
     CosineSquared,
 }
 
-/// For which amplitudes omega^2 lies between the values of `f(x)/x` at rest and at the turning point.
+/// For which amplitudes omega^2 lies between the values of `f(x)/x` at rest and at the turning
+/// point.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BoundsHold {
     /// For all.
@@ -434,11 +445,14 @@ impl fmt::Display for CrossWell {
             self.coordinate, self.equilibrium
         )?;
         match (&self.from, &self.to) {
-            (Some(from), CrossWellEnd::At(to)) => write!(formatter, "{from} < |{AMPLITUDE}| < {to}")?,
-            (Some(from), CrossWellEnd::Never) => write!(formatter, "|{AMPLITUDE}| > {from}")?,
-            (Some(from), CrossWellEnd::Somewhere) => {
-                write!(formatter, "|{AMPLITUDE}| > {from}, up to the next unstable one")?
+            (Some(from), CrossWellEnd::At(to)) => {
+                write!(formatter, "{from} < |{AMPLITUDE}| < {to}")?
             }
+            (Some(from), CrossWellEnd::Never) => write!(formatter, "|{AMPLITUDE}| > {from}")?,
+            (Some(from), CrossWellEnd::Somewhere) => write!(
+                formatter,
+                "|{AMPLITUDE}| > {from}, up to the next unstable one"
+            )?,
             (None, CrossWellEnd::Somewhere) => write!(
                 formatter,
                 "where the potential energy at {AMPLITUDE} is above that of the equilibrium, up to the next unstable one"
@@ -459,19 +473,30 @@ impl fmt::Display for CrossWell {
 }
 
 impl Note {
-    /// The same of motions that do not begin at rest: the root of a relation is then the one that continues the first order.
+    /// The same of motions that do not begin at rest: the root of a relation is then the one that
+    /// continues the first order.
     pub(crate) fn take_root_of_first_order(&mut self) {
-        if let Self::Cut(Cut::TruncatedRelation { linear_frequency, .. } | Cut::Passes { linear_frequency, .. }) = self
+        if let Self::Cut(
+            Cut::TruncatedRelation {
+                linear_frequency, ..
+            }
+            | Cut::Passes {
+                linear_frequency, ..
+            },
+        ) = self
         {
             *linear_frequency = None;
         }
     }
 }
 
-const SLOPE_AT_HALF: &str = "one line: exact for linear forces, and to first order for cubic ones alone";
+const SLOPE_AT_HALF: &str =
+    "one line: exact for linear forces, and to first order for cubic ones alone";
 const MOTION_OF_SERIES: &str = "the motion is that of Lindstedt-Poincare to its first correction";
-const CORNERS: &str = "the force has corners: the expansion holds for motions that stay before the nearest";
-const ROUNDED_COEFFICIENTS: &str = "numerical coefficients, rounded to 15 digits: the equilibrium is no fraction";
+const CORNERS: &str =
+    "the force has corners: the expansion holds for motions that stay before the nearest";
+const ROUNDED_COEFFICIENTS: &str =
+    "numerical coefficients, rounded to 15 digits: the equilibrium is no fraction";
 
 impl fmt::Display for Note {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -746,7 +771,11 @@ impl fmt::Display for Instant {
     }
 }
 
-fn balanced(formatter: &mut fmt::Formatter<'_>, harmonics: &[usize], by_numbers: bool) -> fmt::Result {
+fn balanced(
+    formatter: &mut fmt::Formatter<'_>,
+    harmonics: &[usize],
+    by_numbers: bool,
+) -> fmt::Result {
     let how = if by_numbers {
         "; solved by numbers at an amplitude"
     } else {
@@ -771,7 +800,10 @@ fn agreement(
         _ => format!("{small}^{step}"),
     };
     match degrees {
-        Degrees::Quotient(above, below) => write!(formatter, "degree {above} over degree {below} in {variable}")?,
+        Degrees::Quotient(above, below) => write!(
+            formatter,
+            "degree {above} over degree {below} in {variable}"
+        )?,
         Degrees::Quadratic(p, q, r) => write!(formatter, "degrees {p}, {q} and {r} in {variable}")?,
     }
     write!(
@@ -782,7 +814,10 @@ fn agreement(
 }
 
 fn corner_sides(formatter: &mut fmt::Formatter<'_>, sides: &[CornerSide]) -> fmt::Result {
-    let mut conditions: Vec<String> = sides.iter().map(|side| format!("{} > 0", side.positive)).collect();
+    let mut conditions: Vec<String> = sides
+        .iter()
+        .map(|side| format!("{} > 0", side.positive))
+        .collect();
     conditions.dedup();
     write!(formatter, "for {}: ", conditions.join(", "))?;
     if sides.iter().all(|side| side.taken.is_zero()) {
@@ -798,7 +833,11 @@ fn corner_sides(formatter: &mut fmt::Formatter<'_>, sides: &[CornerSide]) -> fmt
 impl fmt::Display for Cut {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Truncated { small, order, marks } => truncated(formatter, small, *order, marks.as_ref()),
+            Self::Truncated {
+                small,
+                order,
+                marks,
+            } => truncated(formatter, small, *order, marks.as_ref()),
             Self::FirstOrderOnly { small } => write!(
                 formatter,
                 "truncated after {small}^1, the highest order for a force that is no polynomial; an expansion for small {small}"
@@ -818,7 +857,10 @@ impl fmt::Display for Cut {
                 write!(formatter, "after {passes} passes; ")?;
                 root(formatter, *linear_frequency)
             }
-            Self::Corrections { order: 1, embedding } => write!(
+            Self::Corrections {
+                order: 1,
+                embedding,
+            } => write!(
                 formatter,
                 "order 1: the first frequency alone, the terms without {embedding}"
             ),
@@ -837,7 +879,12 @@ impl fmt::Display for Cut {
     }
 }
 
-fn truncated(formatter: &mut fmt::Formatter<'_>, small: &[Symbol], order: u32, marks: Option<&Expr>) -> fmt::Result {
+fn truncated(
+    formatter: &mut fmt::Formatter<'_>,
+    small: &[Symbol],
+    order: u32,
+    marks: Option<&Expr>,
+) -> fmt::Result {
     let names: Vec<&str> = small.iter().map(|name| name.written()).collect();
     let (first, others) = match names.split_first() {
         Some((first, others)) => (*first, others.join(" and ")),
@@ -898,12 +945,19 @@ impl fmt::Display for ExactBy {
         formatter.write_str(match self {
             Self::ClosedForm | Self::Linear => "",
             Self::EnergyQuadrature => ", by quadrature of the energy",
-            Self::Quadrature => ", by quadrature: no elliptic or Gamma function is known to give it",
+            Self::Quadrature => {
+                ", by quadrature: no elliptic or Gamma function is known to give it"
+            }
         })
     }
 }
 
-fn bounds(formatter: &mut fmt::Formatter<'_>, at_rest: &Expr, at_turning: &Expr, range: &BoundsHold) -> fmt::Result {
+fn bounds(
+    formatter: &mut fmt::Formatter<'_>,
+    at_rest: &Expr,
+    at_turning: &Expr,
+    range: &BoundsHold,
+) -> fmt::Result {
     if let BoundsHold::UpTo(place) = range {
         return write!(
             formatter,
@@ -912,7 +966,10 @@ fn bounds(formatter: &mut fmt::Formatter<'_>, at_rest: &Expr, at_turning: &Expr,
             decimal(*place)
         );
     }
-    write!(formatter, "{FREQUENCY}^2 lies between {at_rest} and {at_turning}")?;
+    write!(
+        formatter,
+        "{FREQUENCY}^2 lies between {at_rest} and {at_turning}"
+    )?;
     if let BoundsHold::While {
         slope,
         coordinate,
@@ -970,7 +1027,10 @@ impl fmt::Display for FollowedRoot {
                 RootEnd::Meets => "where it meets the other one",
                 RootEnd::Infinite => "where it is infinite",
             };
-            sentences.push(format!("the root ends at {variable} = {}, {why}", decimal(*place)));
+            sentences.push(format!(
+                "the root ends at {variable} = {}, {why}",
+                decimal(*place)
+            ));
         }
         formatter.write_str(&sentences.join("; "))
     }
@@ -991,7 +1051,9 @@ impl fmt::Display for Position {
         match self {
             Self::Exact(position) => write!(formatter, "{position}"),
             Self::Number(position) => formatter.write_str(&decimal(*position)),
-            Self::WhereReal(position) => write!(formatter, "{position}, where that is real and stable"),
+            Self::WhereReal(position) => {
+                write!(formatter, "{position}, where that is real and stable")
+            }
         }
     }
 }

@@ -8,11 +8,13 @@
 //! several waves:                       squares of the plane are divided until a square has no root, or one to which Newton's method leads
 //! ```
 //!
-//! A square with the centre `c` and half the width `h` has no root where `|U(c)|` exceeds the sum of the sizes of all other terms of its
-//! Taylor polynomial there; nor where that is so of the equations multiplied by the inverse of their slopes at `c`. It has at most one
-//! where the terms above the linear ones change the slopes of the latter by less than one.
+//! A square with the centre `c` and half the width `h` has no root where `|U(c)|` exceeds the sum
+//! of the sizes of all other terms of its Taylor polynomial there; nor where that is so of the
+//! equations multiplied by the inverse of their slopes at `c`. It has at most one where the terms
+//! above the linear ones change the slopes of the latter by less than one.
 //!
-//! Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis*, SIAM 2009, chapter 8.
+//! Reference: R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis*, SIAM
+//! 2009, chapter 8.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -42,13 +44,19 @@ impl PlanePolynomial {
         for (monomial, number) in polynomial.terms() {
             let exponents = [u, v].map(|name| monomial.exponent(name));
             let rest = monomial.without(u).without(v);
-            let coefficient = coefficients.entry(exponents).or_insert_with(num_traits::Zero::zero);
+            let coefficient = coefficients
+                .entry(exponents)
+                .or_insert_with(num_traits::Zero::zero);
             coefficient.add_term(rest, number.clone());
         }
         let value = |(exponents, coefficient): (&[i32; 2], &Polynomial)| {
             Some((solution.evaluate(coefficient, value_of).ok()?, *exponents))
         };
-        coefficients.iter().map(value).collect::<Option<_>>().map(Self)
+        coefficients
+            .iter()
+            .map(value)
+            .collect::<Option<_>>()
+            .map(Self)
     }
 
     /// The value, and the slopes by both coordinates.
@@ -70,7 +78,9 @@ impl PlanePolynomial {
     pub(super) fn size_above(&self, degree: i32, radius: f64) -> f64 {
         let across = radius * std::f64::consts::FRAC_1_SQRT_2;
         let terms = self.0.iter().filter(|(_, [i, j])| i + j > degree);
-        terms.map(|(factor, [i, j])| factor.abs() * across.powi(i + j)).sum()
+        terms
+            .map(|(factor, [i, j])| factor.abs() * across.powi(i + j))
+            .sum()
     }
 
     fn degree(&self) -> i32 {
@@ -105,7 +115,8 @@ impl PlanePolynomial {
     }
 }
 
-/// A polynomial in the amplitude, the constant first, and the same with the sizes of all that was added up.
+/// A polynomial in the amplitude, the constant first, and the same with the sizes of all that was
+/// added up.
 #[derive(Clone, Default)]
 struct Powers {
     coefficients: Vec<f64>,
@@ -157,7 +168,10 @@ impl Powers {
     }
 
     fn value(&self, x: f64) -> f64 {
-        self.coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
+        self.coefficients
+            .iter()
+            .rev()
+            .fold(0.0, |sum, c| sum * x + c)
     }
 }
 
@@ -179,7 +193,8 @@ impl Field {
         times: f64,
         value_of: &dyn Fn(Symbol) -> Option<f64>,
     ) -> Option<Self> {
-        let numeric = |rate: &Polynomial| PlanePolynomial::new(solution, rate, plane.coordinates, value_of);
+        let numeric =
+            |rate: &Polynomial| PlanePolynomial::new(solution, rate, plane.coordinates, value_of);
         let [u, v] = plane.rates.each_ref().map(numeric);
         let rates = [u?, v?];
         let finite = rates
@@ -191,20 +206,27 @@ impl Field {
 
     /// Both rates.
     pub(super) fn rates_at(&self, place: [f64; 2]) -> [f64; 2] {
-        self.rates.each_ref().map(|rate| rate.value_and_slopes(place)[0])
+        self.rates
+            .each_ref()
+            .map(|rate| rate.value_and_slopes(place)[0])
     }
 
     fn jacobian(&self, place: [f64; 2]) -> Matrix2<f64> {
-        let [[_, a, b], [_, c, d]] = self.rates.each_ref().map(|rate| rate.value_and_slopes(place));
+        let [[_, a, b], [_, c, d]] = self
+            .rates
+            .each_ref()
+            .map(|rate| rate.value_and_slopes(place));
         Matrix2::new(a, b, c, d)
     }
 
-    /// The eigenvalues about a place: the larger first; of a pair that with the positive imaginary part.
+    /// The eigenvalues about a place: the larger first; of a pair that with the positive imaginary
+    /// part.
     pub(super) fn eigenvalues(&self, place: [f64; 2]) -> [(f64, f64); 2] {
         let found = self.jacobian(place).complex_eigenvalues();
         let mut both = [(found[0].re, found[0].im), (found[1].re, found[1].im)];
         let size = |(real, imaginary): (f64, f64)| real.hypot(imaginary);
-        let angle = |(real, imaginary): (f64, f64)| imaginary.atan2(real).rem_euclid(std::f64::consts::TAU);
+        let angle =
+            |(real, imaginary): (f64, f64)| imaginary.atan2(real).rem_euclid(std::f64::consts::TAU);
         both.sort_by(|one, other| {
             let sizes = size(*other).total_cmp(&size(*one));
             sizes.then(angle(*one).total_cmp(&angle(*other)))
@@ -212,25 +234,29 @@ impl Field {
         both
     }
 
-    /// Every place other than the origin where both rates vanish; one of those that a symmetry of the plane makes of it.
+    /// Every place other than the origin where both rates vanish; one of those that a symmetry of
+    /// the plane makes of it.
     pub(super) fn places_of_rest(&self) -> Vec<[f64; 2]> {
         let mut found = match self.on_one_wave() {
             Some(found) => found,
             None => self.in_squares(),
         };
-        let turn = |[u, v]: &[f64; 2]| (self.times * (-v).atan2(*u)).rem_euclid(std::f64::consts::TAU);
+        let turn =
+            |[u, v]: &[f64; 2]| (self.times * (-v).atan2(*u)).rem_euclid(std::f64::consts::TAU);
         found.sort_by(|one, other| turn(one).total_cmp(&turn(other)));
         found
     }
 
-    /// `a'` and `a theta'` by harmonics of the angle in the plane: the coefficients of cosine and sine in powers of the amplitude.
+    /// `a'` and `a theta'` by harmonics of the angle in the plane: the coefficients of cosine and
+    /// sine in powers of the amplitude.
     fn harmonics(&self) -> BTreeMap<i32, [[Powers; 2]; 2]> {
         let mut found: BTreeMap<i32, [[Powers; 2]; 2]> = BTreeMap::new();
         for (rate, polynomial) in self.rates.iter().enumerate() {
             for (factor, [i, j]) in &polynomial.0 {
                 let power = (i + j).unsigned_abs() as usize;
                 for (k, number) in expanded([*i, *j]) {
-                    // u^i v^j = (a/2)^(i + j) i^j (z + 1/z)^i (z - 1/z)^j, V stands with another i, and z = e^(i theta) multiplies all.
+                    // u^i v^j = (a/2)^(i + j) i^j (z + 1/z)^i (z - 1/z)^j, V stands with another i,
+                    // and z = e^(i theta) multiplies all.
                     let value = factor * number / 2.0_f64.powi(i + j);
                     let m = k + 1;
                     // What i to its power makes of the number: real and imaginary part.
@@ -241,7 +267,8 @@ impl Field {
                         _ => (0.0, -value),
                     };
                     let sign = if m < 0 { -1.0 } else { 1.0 };
-                    let [[rate_cos, rate_sin], [turn_cos, turn_sin]] = found.entry(m.abs()).or_default();
+                    let [[rate_cos, rate_sin], [turn_cos, turn_sin]] =
+                        found.entry(m.abs()).or_default();
                     rate_cos.add(power, real);
                     turn_cos.add(power, -imaginary);
                     if m != 0 {
@@ -257,8 +284,8 @@ impl Field {
             .collect()
     }
 
-    /// The places by one polynomial in the amplitude; `None` where the rates have more than one wave of the phase, or one that tells
-    /// nothing of it.
+    /// The places by one polynomial in the amplitude; `None` where the rates have more than one
+    /// wave of the phase, or one that tells nothing of it.
     fn on_one_wave(&self) -> Option<Vec<[f64; 2]>> {
         let mut harmonics = self.harmonics();
         harmonics.retain(|m, rates| *m == 0 || !rates.iter().flatten().all(Powers::is_zero));
@@ -282,14 +309,20 @@ impl Field {
         let sum = one.minus(&cosine_squared).minus(&sine_squared);
         let mut places: Vec<[f64; 2]> = vec![];
         for amplitude in amplitudes(&sum.coefficients) {
-            let [determinant, cosine, sine] = [&determinant, &cosine, &sine].map(|part| part.value(amplitude));
+            let [determinant, cosine, sine] =
+                [&determinant, &cosine, &sine].map(|part| part.value(amplitude));
             if determinant == 0.0 {
                 continue;
             }
             let angle = (sine / determinant).atan2(cosine / determinant);
-            let turns = (0..common).map(|k| (angle + std::f64::consts::TAU * f64::from(k)) / f64::from(common));
+            let turns = (0..common)
+                .map(|k| (angle + std::f64::consts::TAU * f64::from(k)) / f64::from(common));
             for angle in turns {
-                self.keep(self.settled_from(on_circle(amplitude, angle)), amplitude, &mut places);
+                self.keep(
+                    self.settled_from(on_circle(amplitude, angle)),
+                    amplitude,
+                    &mut places,
+                );
             }
         }
         Some(places)
@@ -304,7 +337,8 @@ impl Field {
         let turned = |[x, y]: &[f64; 2]| {
             let times = self.times.round().abs().max(1.0) as u32;
             let near = |k: u32| {
-                let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(times)).sin_cos();
+                let (sin, cos) =
+                    (std::f64::consts::TAU * f64::from(k) / f64::from(times)).sin_cos();
                 (cos * x - sin * y - u).hypot(sin * x + cos * y - v) <= SAME * size
             };
             (0..times).any(near)
@@ -334,16 +368,24 @@ impl Field {
         (moved <= SETTLED * radius).then_some(place)
     }
 
-    /// A radius beyond which the terms of the highest degree outweigh all others, as far as they vanish nowhere on it.
+    /// A radius beyond which the terms of the highest degree outweigh all others, as far as they
+    /// vanish nowhere on it.
     fn outermost(&self) -> f64 {
         const ANGLES: usize = 72;
         /// The least part of their sizes that counts where they almost vanish.
         const LEAST: f64 = 1e-2;
-        let degree = self.rates.iter().map(PlanePolynomial::degree).max().unwrap_or(0);
+        let degree = self
+            .rates
+            .iter()
+            .map(PlanePolynomial::degree)
+            .max()
+            .unwrap_or(0);
         let size = |wanted: &dyn Fn(i32) -> bool, radius: f64| -> f64 {
             let terms = self.rates.iter().flat_map(|rate| &rate.0);
             let terms = terms.filter(|(_, [i, j])| wanted(i + j));
-            terms.map(|(factor, [i, j])| factor.abs() * radius.powi(i + j)).sum()
+            terms
+                .map(|(factor, [i, j])| factor.abs() * radius.powi(i + j))
+                .sum()
         };
         let leading = |k: usize| {
             let place = on_circle(1.0, std::f64::consts::TAU * k as f64 / ANGLES as f64);
@@ -353,13 +395,20 @@ impl Field {
                     .map(|(factor, [i, j])| factor * place[0].powi(*i) * place[1].powi(*j))
                     .sum()
             };
-            self.rates.each_ref().map(value).into_iter().fold(0.0, f64::hypot)
+            self.rates
+                .each_ref()
+                .map(value)
+                .into_iter()
+                .fold(0.0, f64::hypot)
         };
         let least = (0..ANGLES).map(leading).fold(f64::INFINITY, f64::min);
         let least = least.max(LEAST * size(&|own| own == degree, 1.0));
         let excess = |log: f64| {
             let radius = log.exp();
-            let (own, others) = (least * radius.powi(degree), size(&|own| own < degree, radius));
+            let (own, others) = (
+                least * radius.powi(degree),
+                size(&|own| own < degree, radius),
+            );
             (own - others) / (own + others)
         };
         /// Logarithms of the smallest and the largest radius.
@@ -387,7 +436,9 @@ impl Field {
             match self.look_at(centre, half) {
                 Look::Nothing => {}
                 Look::AtMostOne => {
-                    let near = |[u, v]: &[f64; 2]| (u - centre[0]).abs().max((v - centre[1]).abs()) <= 1.5 * half;
+                    let near = |[u, v]: &[f64; 2]| {
+                        (u - centre[0]).abs().max((v - centre[1]).abs()) <= 1.5 * half
+                    };
                     let found = self.settled_from(centre).filter(near).filter(is_elsewhere);
                     let radius = found.map_or(1.0, |[u, v]| u.hypot(v));
                     self.keep(found, radius, &mut places);
@@ -430,7 +481,11 @@ impl Field {
             return Look::Nothing;
         }
         let entry = |table: &[Vec<f64>], i: usize, j: usize| -> f64 {
-            table.get(i).and_then(|row| row.get(j)).copied().unwrap_or(0.0)
+            table
+                .get(i)
+                .and_then(|row| row.get(j))
+                .copied()
+                .unwrap_or(0.0)
         };
         let [one, other] = &tables;
         let slopes = Matrix2::new(
@@ -452,7 +507,8 @@ impl Field {
             for i in 0..highest {
                 for j in 0..highest {
                     if i + j >= 2 {
-                        let value = inverse[(row, 0)] * entry(one, i, j) + inverse[(row, 1)] * entry(other, i, j);
+                        let value = inverse[(row, 0)] * entry(one, i, j)
+                            + inverse[(row, 1)] * entry(other, i, j);
                         rest += value.abs() * power(i + j);
                         change += (i + j) as f64 * value.abs() * power(i + j - 1);
                     }
@@ -481,7 +537,9 @@ enum Look {
 /// `D`, `D cos(g theta)` and `D sin(g theta)`.
 fn solved([[rate, rate_cos, rate_sin], [turn, turn_cos, turn_sin]]: &[Wave; 2]) -> [Powers; 3] {
     [
-        rate_cos.product(turn_sin).minus(&rate_sin.product(turn_cos)),
+        rate_cos
+            .product(turn_sin)
+            .minus(&rate_sin.product(turn_cos)),
         rate_sin.product(turn).minus(&rate.product(turn_sin)),
         turn_cos.product(rate).minus(&rate_cos.product(turn)),
     ]
@@ -490,8 +548,8 @@ fn solved([[rate, rate_cos, rate_sin], [turn, turn_cos, turn_sin]]: &[Wave; 2]) 
 /// `(z + 1/z)^i (z - 1/z)^j` by powers of `z`.
 fn expanded([i, j]: [i32; 2]) -> BTreeMap<i32, f64> {
     let mut product = BTreeMap::from([(0, 1.0)]);
-    for sign in
-        std::iter::repeat_n(1.0, i.unsigned_abs() as usize).chain(std::iter::repeat_n(-1.0, j.unsigned_abs() as usize))
+    for sign in std::iter::repeat_n(1.0, i.unsigned_abs() as usize)
+        .chain(std::iter::repeat_n(-1.0, j.unsigned_abs() as usize))
     {
         let mut next: BTreeMap<i32, f64> = BTreeMap::new();
         for (k, value) in product {
@@ -503,16 +561,24 @@ fn expanded([i, j]: [i32; 2]) -> BTreeMap<i32, f64> {
     product
 }
 
-/// The positive roots of a polynomial in the amplitude, of one in its square where it has no odd powers.
+/// The positive roots of a polynomial in the amplitude, of one in its square where it has no odd
+/// powers.
 fn amplitudes(relation: &[f64]) -> Vec<f64> {
     let lowest = relation.iter().position(|value| *value != 0.0).unwrap_or(0);
     let relation = &relation[lowest..];
-    let odd = relation.iter().skip(1).step_by(2).any(|value| *value != 0.0);
+    let odd = relation
+        .iter()
+        .skip(1)
+        .step_by(2)
+        .any(|value| *value != 0.0);
     match odd {
         true => positive_roots(relation),
         false => {
             let in_square: Vec<f64> = relation.iter().step_by(2).copied().collect();
-            positive_roots(&in_square).into_iter().map(f64::sqrt).collect()
+            positive_roots(&in_square)
+                .into_iter()
+                .map(f64::sqrt)
+                .collect()
         }
     }
 }
@@ -520,7 +586,10 @@ fn amplitudes(relation: &[f64]) -> Vec<f64> {
 /// The positive roots of a polynomial where it changes its sign, lowest coefficient first.
 fn positive_roots(coefficients: &[f64]) -> Vec<f64> {
     let zeros = real_zeros(coefficients, [0.0, f64::INFINITY]).into_iter();
-    zeros.filter(|zero| zero.crosses).map(|zero| zero.place).collect()
+    zeros
+        .filter(|zero| zero.crosses)
+        .map(|zero| zero.place)
+        .collect()
 }
 
 /// `u` and `v` of a radius and an angle.

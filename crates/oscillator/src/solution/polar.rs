@@ -69,7 +69,9 @@ impl Rates {
         value_of: &dyn Fn(Symbol) -> Option<f64>,
     ) -> Option<Self> {
         let parameters = solution.parameters.iter();
-        let mut known: BTreeMap<Symbol, f64> = parameters.filter_map(|&name| Some((name, value_of(name)?))).collect();
+        let mut known: BTreeMap<Symbol, f64> = parameters
+            .filter_map(|&name| Some((name, value_of(name)?)))
+            .collect();
         known.extend(solution.defined_values(value_of).ok()?);
         let exact = known
             .iter()
@@ -117,7 +119,8 @@ impl Rates {
         let count = (DECADES as usize) * PER_DECADE;
         let place = |k: usize| 10.0_f64.powf(DECADES * (k as f64 / count as f64 - 0.5));
         let mut found = vec![];
-        let mut between = |from: f64, to: f64| found.extend(find_root(|a| self.excess(a), from, to));
+        let mut between =
+            |from: f64, to: f64| found.extend(find_root(|a| self.excess(a), from, to));
         let value = |k: usize| (place(k), self.excess(place(k)));
         let (mut first, mut before) = (value(0), value(0));
         for k in 1..=count {
@@ -153,8 +156,8 @@ impl Rates {
         })
     }
 
-    /// The motion without a part of its own, where no force drives it, or dry friction drains more than a force feeds: about it
-    /// `B' = lambda B + mu B*`.
+    /// The motion without a part of its own, where no force drives it, or dry friction drains more
+    /// than a force feeds: about it `B' = lambda B + mu B*`.
     fn rest(&self) -> Option<SteadyState> {
         /// Near enough, and not so near that rounding counts.
         const NEAR: f64 = 1e-7;
@@ -164,7 +167,8 @@ impl Rates {
         if forced && near.rate[0] + size(&near) >= 0.0 {
             return None;
         }
-        let [rate, turn, wave] = [near.rate[0], near.turn[0], size(&near)].map(|value| value / NEAR);
+        let [rate, turn, wave] =
+            [near.rate[0], near.turn[0], size(&near)].map(|value| value / NEAR);
         let under = wave * wave - turn * turn;
         let eigenvalues = match under >= 0.0 {
             true => [(rate + under.sqrt(), 0.0), (rate - under.sqrt(), 0.0)],

@@ -1,9 +1,11 @@
 //! Steady motions of a driven oscillator: the frequency-response equation and what follows from it.
 //!
-//! Reference: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 4.1.1 to 4.1.4 and 5.7.
+//! Reference: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 4.1.1
+//! to 4.1.4 and 5.7.
 //!
-//! In: the slow equations of a driven motion. Out, in symbols, the relation between amplitude and detuning, its branches, its
-//! peak and the places where two branches meet; at numbers, every steady motion with the eigenvalues that decide its stability.
+//! In: the slow equations of a driven motion. Out, in symbols, the relation between amplitude and
+//! detuning, its branches, its peak and the places where two branches meet; at numbers, every
+//! steady motion with the eigenvalues that decide its stability.
 
 use super::Solution;
 use super::plane::Field;
@@ -12,26 +14,29 @@ use crate::exact::Polynomial;
 use crate::expr::Expr;
 use crate::symbol::Symbol;
 
-/// What is known of the steady motions of a driven oscillator. Everything is in the amplitude, the parameters and the definitions
-/// of the solution, the detuning among them.
+/// What is known of the steady motions of a driven oscillator. Everything is in the amplitude, the
+/// parameters and the definitions of the solution, the detuning among them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
     /// `x(t)` in `t`, the amplitude and the phase of the slow equations.
     pub motion: Expr,
-    /// The frequency-response equation: zero at every steady motion; `None` where the phase cannot be eliminated.
+    /// The frequency-response equation: zero at every steady motion; `None` where the phase cannot
+    /// be eliminated.
     pub relation: Option<Polynomial>,
     /// The relation solved for the detuning, where it is quadratic in that.
     pub branches: Option<Branches>,
     /// The largest amplitude of all detunings, where it has a closed form.
     pub peak: Option<Expr>,
-    /// The squares of the amplitudes at which two branches meet, by the detuning, where they have a closed form.
+    /// The squares of the amplitudes at which two branches meet, by the detuning, where they have a
+    /// closed form.
     pub folds: Vec<Expr>,
-    /// The discriminant of the relation in the square of the amplitude: zero where two branches meet, which is where the
-    /// amplitude jumps.
+    /// The discriminant of the relation in the square of the amplitude: zero where two branches
+    /// meet, which is where the amplitude jumps.
     pub jumps: Option<Polynomial>,
     /// What stands for the relation and its branches where they are no polynomials.
     pub closed: Option<ClosedRelation>,
-    /// The slow equations in coordinates without a singular origin, where they are polynomials in them.
+    /// The slow equations in coordinates without a singular origin, where they are polynomials in
+    /// them.
     pub plane: Option<Plane>,
 }
 
@@ -51,7 +56,8 @@ pub struct ClosedRelation {
 pub struct Branches {
     /// The middle of both.
     pub centre: Polynomial,
-    /// The square of their distance from it; steady motions have amplitudes where it is not negative.
+    /// The square of their distance from it; steady motions have amplitudes where it is not
+    /// negative.
     pub width_squared: Polynomial,
 }
 
@@ -62,8 +68,9 @@ pub struct Plane {
     pub coordinates: [Symbol; 2],
     /// `u'` and `v'`.
     pub rates: [Polynomial; 2],
-    /// The same by parts, each by its orders: what drains, what turns, and each wave of the phase; first what leads, then what comes
-    /// one, two, ... orders later. Nothing where each part has one order alone.
+    /// The same by parts, each by its orders: what drains, what turns, and each wave of the phase;
+    /// first what leads, then what comes one, two, ... orders later. Nothing where each part has
+    /// one order alone.
     pub parts: Vec<Vec<[Polynomial; 2]>>,
 }
 
@@ -74,8 +81,8 @@ pub struct SteadyState {
     pub amplitude: f64,
     /// The phase of the slow equations, from -pi to pi.
     pub phase: f64,
-    /// Real and imaginary part of the eigenvalues of the slow equations about it, per unit of time: the larger first, of a pair that
-    /// with the positive imaginary part.
+    /// Real and imaginary part of the eigenvalues of the slow equations about it, per unit of time:
+    /// the larger first, of a pair that with the positive imaginary part.
     pub eigenvalues: [(f64, f64); 2],
 }
 
@@ -96,9 +103,9 @@ impl SteadyState {
 }
 
 impl Solution {
-    /// Every steady motion of a driven oscillator at given values, by its slow equations, largest amplitude first; nothing for
-    /// other motions, and where a value is missing. Those at an amplitude at which the series hardly converges are
-    /// [left out](Self::steady_motions).
+    /// Every steady motion of a driven oscillator at given values, by its slow equations, largest
+    /// amplitude first; nothing for other motions, and where a value is missing. Those at an
+    /// amplitude at which the series hardly converges are [left out](Self::steady_motions).
     ///
     /// ```
     /// # use lindstedt_oscillator as lindstedt;
@@ -116,8 +123,9 @@ impl Solution {
         self.steady_motions(value_of).states
     }
 
-    /// Every place at which both rates of the slow equations vanish, and apart from the others those at an amplitude at which the last
-    /// order of the slow equations is more than half of the one before it: there the series hardly converges.
+    /// Every place at which both rates of the slow equations vanish, and apart from the others
+    /// those at an amplitude at which the last order of the slow equations is more than half of the
+    /// one before it: there the series hardly converges.
     pub fn steady_motions(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> SteadyMotions {
         // Definitions are evaluated once, not with each coefficient.
         let defined = self.defined_values(value_of).unwrap_or_default();
@@ -130,13 +138,15 @@ impl Solution {
             let plane = self.response.as_ref()?.plane.as_ref()?;
             let resonance = self.modulation.as_ref()?.resonance.as_ref()?;
             let driving = self.evaluate_expression(&resonance.driving_frequency, value_of)?;
-            let frequency = driving.abs() * f64::from(resonance.times_driving) / f64::from(resonance.times_linear);
+            let frequency = driving.abs() * f64::from(resonance.times_driving)
+                / f64::from(resonance.times_linear);
             Orders::new(self, plane, frequency, value_of)
         };
         let orders = orders();
         let is_spurious = |state: &SteadyState| {
             let orders = orders.as_ref();
-            orders.is_some_and(|orders| state.amplitude > 0.0 && orders.is_spurious(state.amplitude))
+            orders
+                .is_some_and(|orders| state.amplitude > 0.0 && orders.is_spurious(state.amplitude))
         };
         let (spurious, states) = found.into_iter().partition(is_spurious);
         SteadyMotions { states, spurious }
@@ -156,7 +166,11 @@ impl Solution {
             eigenvalues: field.eigenvalues([u, v]),
         };
         let mut states: Vec<SteadyState> = field.places_of_rest().into_iter().map(state).collect();
-        if field.rates_at([0.0, 0.0]).iter().all(|rate| rate.abs() < 1e-300) {
+        if field
+            .rates_at([0.0, 0.0])
+            .iter()
+            .all(|rate| rate.abs() < 1e-300)
+        {
             states.push(state([0.0, 0.0]));
         }
         // Of one amplitude up to rounding they keep the order of their phases.

@@ -1,12 +1,15 @@
-//! The amplitude beyond which steady motions of slow equations are those of the truncation: spurious ones.
+//! The amplitude beyond which steady motions of slow equations are those of the truncation:
+//! spurious ones.
 //!
 //! ```text
 //! S_0(a) = omega a,     S_k(a) = the sum of the sizes of all terms of the k-th order, of degree two and above in the amplitude
 //! ```
 //!
-//! The series is of use as long as each order is much smaller than the one before. Where the last one is more than half of that, a steady
-//! motion balances what was kept against what was left out, and says nothing of the equation. The degrees nought and one are there at every amplitude, such
-//! as a shift of the linear frequency, and do not count. That no true motion is near such a steady motion is for the judge to find.
+//! The series is of use as long as each order is much smaller than the one before. Where the last
+//! one is more than half of that, a steady motion balances what was kept against what was left out,
+//! and says nothing of the equation. The degrees nought and one are there at every amplitude, such
+//! as a shift of the linear frequency, and do not count. That no true motion is near such a steady
+//! motion is for the judge to find.
 
 use super::Solution;
 use super::plane::PlanePolynomial;
@@ -50,7 +53,10 @@ impl Orders {
         }
         let added = |k: usize| -> f64 {
             let orders = self.parts.iter().filter_map(|part| part.get(k));
-            orders.flatten().map(|rate| rate.size_above(LINEAR, amplitude)).sum()
+            orders
+                .flatten()
+                .map(|rate| rate.size_above(LINEAR, amplitude))
+                .sum()
         };
         let sizes = std::iter::once(self.frequency * amplitude).chain((0..count).map(added));
         let sizes: Vec<f64> = sizes.filter(|size| *size != 0.0).collect();

@@ -38,11 +38,13 @@ impl Sum {
 
     /// The terms and the numbers before them.
     pub fn terms(&self) -> impl Iterator<Item = (&Monomial, &Rational)> {
-        self.terms.iter().map(|(monomial, number)| (monomial, number))
+        self.terms
+            .iter()
+            .map(|(monomial, number)| (monomial, number))
     }
 
-    /// The sum of its terms, each written by `exact`; a rounded number by `decimal`, from its six digits (or as
-    /// many as were asked for) and what it multiplies, if anything.
+    /// The sum of its terms, each written by `exact`; a rounded number by `decimal`, from its six
+    /// digits (or as many as were asked for) and what it multiplies, if anything.
     pub fn written(
         &self,
         exact: impl Fn(&Polynomial) -> String,

@@ -1,8 +1,9 @@
 //! Products of series in a small parameter, order by order, none computed twice.
 //!
-//! With `u = u_0 + delta u_1 + ...` and `v` likewise, order `n` of the product is `sum_i u_i v_(n-i)`. A [`Convolutions`]
-//! holds the products an equation asks for (`x^2`, `x^3`, `x x'^2`, ...) as a graph on its leaves and computes one order of
-//! each when that order of the leaves is known, only as far as it is needed.
+//! With `u = u_0 + delta u_1 + ...` and `v` likewise, order `n` of the product is
+//! `sum_i u_i v_(n-i)`. A [`Convolutions`] holds the products an equation asks for (`x^2`, `x^3`,
+//! `x x'^2`, ...) as a graph on its leaves and computes one order of each when that order of the
+//! leaves is known, only as far as it is needed.
 
 use std::collections::HashMap;
 
@@ -57,13 +58,18 @@ impl<R: Ring> Convolutions<R> {
         node
     }
 
-    /// The power `base^exponent`, `exponent >= 1`, built by steps of two so that neighbouring powers share their work.
+    /// The power `base^exponent`, `exponent >= 1`, built by steps of two so that neighbouring
+    /// powers share their work.
     pub fn power(&mut self, base: Node, exponent: u32) -> Node {
         if exponent <= 1 {
             return base;
         }
         let square = self.product(base, base);
-        let start = if exponent.is_multiple_of(2) { square } else { base };
+        let start = if exponent.is_multiple_of(2) {
+            square
+        } else {
+            base
+        };
         (1..exponent.div_ceil(2)).fold(start, |power, _| self.product(power, square))
     }
 
@@ -92,7 +98,9 @@ impl<R: Ring> Convolutions<R> {
 
     /// Order `order` of every series that is known that far.
     pub fn orders(&self, order: usize) -> impl Iterator<Item = &FourierSeries<R>> {
-        self.nodes.iter().filter_map(move |entry| entry.known.get(order))
+        self.nodes
+            .iter()
+            .filter_map(move |entry| entry.known.get(order))
     }
 
     /// How many series there are, the leaves among them.
@@ -104,25 +112,39 @@ impl<R: Ring> Convolutions<R> {
     pub fn advance(&mut self, order: usize) {
         for index in 0..self.nodes.len() {
             let entry = &self.nodes[index];
-            let Some((left, right)) = entry.factors else { continue };
+            let Some((left, right)) = entry.factors else {
+                continue;
+            };
             if entry.needed.is_none_or(|needed| needed < order) {
                 continue;
             }
-            let (left, right, same) = (&self.nodes[left.0].known, &self.nodes[right.0].known, left == right);
+            let (left, right, same) = (
+                &self.nodes[left.0].known,
+                &self.nodes[right.0].known,
+                left == right,
+            );
             let terms: Vec<_> = match same {
                 // A square: u_i u_j and u_j u_i are the same product.
                 true => (0..=order / 2)
-                    .map(|i| (if 2 * i == order { 1 } else { 2 }, &left[i], &left[order - i]))
+                    .map(|i| {
+                        (
+                            if 2 * i == order { 1 } else { 2 },
+                            &left[i],
+                            &left[order - i],
+                        )
+                    })
                     .collect(),
-                false => (0..=order).map(|i| (1, &left[i], &right[order - i])).collect(),
+                false => (0..=order)
+                    .map(|i| (1, &left[i], &right[order - i]))
+                    .collect(),
             };
             let product = sum_of_products(&self.ring, &terms);
             self.nodes[index].known.push(product);
         }
     }
 
-    /// The first variation of every series at order zero when the leaves vary by `of_leaves`; zero of products that nobody
-    /// asked for.
+    /// The first variation of every series at order zero when the leaves vary by `of_leaves`; zero
+    /// of products that nobody asked for.
     pub fn variations(&self, of_leaves: &HashMap<Node, FourierSeries<R>>) -> Vec<FourierSeries<R>> {
         let mut variations: Vec<FourierSeries<R>> = Vec::with_capacity(self.nodes.len());
         for (index, entry) in self.nodes.iter().enumerate() {
@@ -135,7 +157,9 @@ impl<R: Ring> Convolutions<R> {
                     let pairs = [(&variations[left.0], right), (&variations[right.0], left)];
                     let terms: Vec<_> = pairs
                         .into_iter()
-                        .filter_map(|(variation, other)| Some((1, variation, self.order(other, 0)?)))
+                        .filter_map(|(variation, other)| {
+                            Some((1, variation, self.order(other, 0)?))
+                        })
                         .collect();
                     sum_of_products(&self.ring, &terms)
                 }
@@ -145,8 +169,14 @@ impl<R: Ring> Convolutions<R> {
         variations
     }
 
-    /// Adds `factor` times the variation of each series to its order `order`, where that order is already known.
-    pub fn correct(&mut self, order: usize, factor: &FourierSeries<R>, variations: &[FourierSeries<R>]) {
+    /// Adds `factor` times the variation of each series to its order `order`, where that order is
+    /// already known.
+    pub fn correct(
+        &mut self,
+        order: usize,
+        factor: &FourierSeries<R>,
+        variations: &[FourierSeries<R>],
+    ) {
         for (entry, variation) in self.nodes.iter_mut().zip(variations) {
             if let Some(series) = entry.known.get_mut(order) {
                 *series = series.sum(&factor.product(variation));

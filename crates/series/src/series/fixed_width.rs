@@ -1,14 +1,16 @@
-//! Short Fourier series: numerators of two machine words over one denominator, without symbols and without memory for each number.
+//! Short Fourier series: numerators of two machine words over one denominator, without symbols and
+//! without memory for each number.
 //!
-//! What an operation can grow to is bounded before it is done, from the largest numerators of its arguments. Where that is more than
-//! two words hold there is no result, so that none is ever wrong, and no addition or multiplication has to look for overflow.
+//! What an operation can grow to is bounded before it is done, from the largest numerators of its
+//! arguments. Where that is more than two words hold there is no result, so that none is ever
+//! wrong, and no addition or multiplication has to look for overflow.
 
 use num_integer::Integer as _;
 
 use super::waves::Wave;
 
-/// Numerators and all sums on the way to them stay below this. Half of what fits is room enough for the rounding of what they can
-/// grow to.
+/// Numerators and all sums on the way to them stay below this. Half of what fits is room enough for
+/// the rounding of what they can grow to.
 const BOUND: f64 = (1_u128 << 126) as f64;
 
 /// A series of cosines or of sines, with all harmonics `0, 1, 2, ...`, the even or the odd ones.
@@ -56,8 +58,16 @@ impl Harmonics {
 
 impl ShortSeries {
     /// From numerators over a positive denominator; `None` where they are too long.
-    pub fn new(wave: Wave, harmonics: Harmonics, denominator: i128, numerators: Vec<i128>) -> Option<Self> {
-        let largest = numerators.iter().map(|numerator| numerator.unsigned_abs()).max();
+    pub fn new(
+        wave: Wave,
+        harmonics: Harmonics,
+        denominator: i128,
+        numerators: Vec<i128>,
+    ) -> Option<Self> {
+        let largest = numerators
+            .iter()
+            .map(|numerator| numerator.unsigned_abs())
+            .max();
         let largest = largest.unwrap_or(0) as f64;
         (largest < BOUND && denominator > 0).then_some(Self {
             wave,
@@ -127,7 +137,10 @@ impl ShortSeries {
     /// In lowest terms.
     pub fn reduced(mut self) -> Self {
         // Halvings first: mostly nothing else is left to look for.
-        let all = self.numerators.iter().fold(0, |all, numerator| all | numerator);
+        let all = self
+            .numerators
+            .iter()
+            .fold(0, |all, numerator| all | numerator);
         let halvings = self.denominator.trailing_zeros();
         let mut odd = self.denominator >> halvings;
         for numerator in &self.numerators {
@@ -209,7 +222,8 @@ fn is_power_of_two(number: i128) -> bool {
     number & (number - 1) == 0
 }
 
-/// A quotient without remainder by a positive divisor; most are powers of two, and most of the others words.
+/// A quotient without remainder by a positive divisor; most are powers of two, and most of the
+/// others words.
 fn exact_quotient(number: i128, divisor: i128) -> i128 {
     if is_power_of_two(divisor) {
         return number >> divisor.trailing_zeros();
@@ -259,7 +273,8 @@ pub fn combination(terms: &[(i128, i128, &ShortSeries)]) -> Option<ShortSeries> 
     let mut bound = 0.0;
     let mut sums = vec![0_i128; length];
     for (numerator, denominator, series) in terms {
-        let factor = numerator.checked_mul(exact_quotient(common, denominator * series.denominator))?;
+        let factor =
+            numerator.checked_mul(exact_quotient(common, denominator * series.denominator))?;
         bound += (factor as f64).abs() * series.largest;
         if bound >= BOUND {
             return None;
@@ -274,14 +289,23 @@ pub fn combination(terms: &[(i128, i128, &ShortSeries)]) -> Option<ShortSeries> 
 /// `sum_i left_i right_(n-i)` over two lists of the same length, all products of the same waves.
 pub fn convolution(left: &[ShortSeries], right: &[ShortSeries]) -> Option<ShortSeries> {
     let last = right.len().checked_sub(1)?;
-    let terms = left.iter().enumerate().map(|(i, left)| (1, left, &right[last - i]));
+    let terms = left
+        .iter()
+        .enumerate()
+        .map(|(i, left)| (1, left, &right[last - i]));
     sum_of_products(terms)
 }
 
 /// `sum_i series_i series_(n-i)`, each pair once.
 pub fn square(series: &[ShortSeries]) -> Option<ShortSeries> {
     let last = series.len().checked_sub(1)?;
-    let terms = (0..=last / 2).map(|i| (if 2 * i == last { 1 } else { 2 }, &series[i], &series[last - i]));
+    let terms = (0..=last / 2).map(|i| {
+        (
+            if 2 * i == last { 1 } else { 2 },
+            &series[i],
+            &series[last - i],
+        )
+    });
     sum_of_products(terms)
 }
 
@@ -305,7 +329,8 @@ fn sum_of_products<'a>(
     let mut bound = 0.0;
     let mut sums = vec![0_i128; length];
     for (weight, left, right) in terms {
-        let factor = weight.checked_mul(exact_quotient(common, left.denominator * right.denominator))?;
+        let factor =
+            weight.checked_mul(exact_quotient(common, left.denominator * right.denominator))?;
         let shorter = left.numerators.len().min(right.numerators.len());
         let scaled = (factor as f64).abs() * left.largest;
         // A sum is met once by sums of harmonics and twice by their differences.
@@ -350,13 +375,21 @@ fn add_doubled_product(
     let upper_is_negative = left.wave == Wave::Sine && right.wave == Wave::Sine;
     // Of the sine of a difference, the sign of the difference.
     let (mixed, sine_is_left) = (left.wave != right.wave, left.wave == Wave::Sine);
-    let signed = |negative: bool, product: i128| if negative { product.wrapping_neg() } else { product };
+    let signed = |negative: bool, product: i128| {
+        if negative {
+            product.wrapping_neg()
+        } else {
+            product
+        }
+    };
     for (a, own) in left.numerators.iter().enumerate() {
         let own = own.wrapping_mul(factor);
         if own == 0 {
             continue;
         }
-        let (below, above) = right.numerators.split_at((a + 1).min(right.numerators.len()));
+        let (below, above) = right
+            .numerators
+            .split_at((a + 1).min(right.numerators.len()));
         for (b, other) in below.iter().enumerate() {
             let product = multiply(own, *other);
             let upper = &mut sums[a + b + usize::from(both_odd)];
@@ -394,17 +427,21 @@ mod tests {
         FourierSeries::from_parts(Integers, cosine, sine).over(&Integer::from(series.denominator))
     }
 
-    /// Of both waves and all kinds of harmonics, with numerators that are no multiples of each other.
+    /// Of both waves and all kinds of harmonics, with numerators that are no multiples of each
+    /// other.
     fn examples() -> Vec<ShortSeries> {
         let mut examples = vec![];
         for wave in [Wave::Cosine, Wave::Sine] {
             for harmonics in [Harmonics::All, Harmonics::Even, Harmonics::Odd] {
                 for (length, denominator) in [(1, 3), (4, 32), (7, 90)] {
-                    let mut numerators: Vec<i128> = (0..length).map(|k| k * k * k - 9 * k + 5).collect();
+                    let mut numerators: Vec<i128> =
+                        (0..length).map(|k| k * k * k - 9 * k + 5).collect();
                     if wave == Wave::Sine && harmonics != Harmonics::Odd {
                         numerators[0] = 0;
                     }
-                    examples.push(ShortSeries::new(wave, harmonics, denominator, numerators).expect("short"));
+                    examples.push(
+                        ShortSeries::new(wave, harmonics, denominator, numerators).expect("short"),
+                    );
                 }
             }
         }
@@ -416,29 +453,38 @@ mod tests {
         let mut products = 0;
         for left in examples() {
             assert_eq!(long(&left.clone().reduced()), long(&left));
-            assert_eq!(long(&left.derivative().expect("short")), long(&left).derivative());
+            assert_eq!(
+                long(&left.derivative().expect("short")),
+                long(&left).derivative()
+            );
             let second = left.second_derivative().expect("short");
             assert_eq!(long(&second), long(&left).derivative().derivative());
             assert_eq!(long(&left.clone().negative()), long(&left).times(-1));
             let solution = left.without_resonance_over_divisors().expect("short");
             assert_eq!(long(&solution), long(&left).solve_oscillator().0);
             for right in examples() {
-                let mixed = (left.harmonics == Harmonics::All) != (right.harmonics == Harmonics::All);
+                let mixed =
+                    (left.harmonics == Harmonics::All) != (right.harmonics == Harmonics::All);
                 if mixed {
                     continue;
                 }
                 products += 1;
                 let product = sum_of_products([(3, &left, &right)].into_iter()).expect("short");
-                let expected = fourier::sum_of_products(&Integers, &[(3, &long(&left), &long(&right))]);
+                let expected =
+                    fourier::sum_of_products(&Integers, &[(3, &long(&left), &long(&right))]);
                 assert_eq!(long(&product), expected, "{left:?} {right:?}");
-                let [left_right, right_left] = [[left.clone(), right.clone()], [right.clone(), left.clone()]];
+                let [left_right, right_left] =
+                    [[left.clone(), right.clone()], [right.clone(), left.clone()]];
                 let sums = [
                     convolution(&left_right, &left_right),
                     convolution(&left_right, &right_left),
                 ];
                 let expected = [
                     vec![(2, &long(&left), &long(&right))],
-                    vec![(1, &long(&left), &long(&left)), (1, &long(&right), &long(&right))],
+                    vec![
+                        (1, &long(&left), &long(&left)),
+                        (1, &long(&right), &long(&right)),
+                    ],
                 ]
                 .map(|terms| fourier::sum_of_products(&Integers, &terms));
                 let same_waves = (left.wave, left.harmonics) == (right.wave, right.harmonics);
@@ -449,8 +495,10 @@ mod tests {
                 }
                 if (left.wave, left.harmonics) == (right.wave, right.harmonics) {
                     let sum = combination(&[(2, 7, &left), (-5, 1, &right)]).expect("short");
-                    let expected =
-                        fourier::linear_combination(&Integers, &[(2, &long(&left).divided_by(7)), (-5, &long(&right))]);
+                    let expected = fourier::linear_combination(
+                        &Integers,
+                        &[(2, &long(&left).divided_by(7)), (-5, &long(&right))],
+                    );
                     assert_eq!(long(&sum), expected);
                 }
             }
@@ -461,13 +509,15 @@ mod tests {
     #[test]
     fn what_does_not_fit_is_no_series() {
         let half = 1 << 63;
-        let long = ShortSeries::new(Wave::Cosine, Harmonics::Odd, 1, vec![half, half]).expect("half of it");
+        let long = ShortSeries::new(Wave::Cosine, Harmonics::Odd, 1, vec![half, half])
+            .expect("half of it");
         assert!(square(std::slice::from_ref(&long)).is_none());
         assert!(combination(&[(half, 1, &long)]).is_none());
         assert!(combination(&[(1, half, &long), (1, half - 1, &long)]).is_none());
         assert!(ShortSeries::new(Wave::Cosine, Harmonics::Odd, 1, vec![i128::MIN]).is_none());
         let prime = (1 << 61) - 1;
-        let far = ShortSeries::new(Wave::Cosine, Harmonics::All, 1, vec![prime; 60]).expect("short");
+        let far =
+            ShortSeries::new(Wave::Cosine, Harmonics::All, 1, vec![prime; 60]).expect("short");
         assert!(far.without_resonance_over_divisors().is_none());
     }
 }

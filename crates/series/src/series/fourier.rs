@@ -1,11 +1,13 @@
 //! Fourier series in `theta = omega t`, over any coefficient ring.
 //!
-//! `u(theta) = c_0 + c_1 cos theta + s_1 sin theta + c_2 cos 2 theta + ...`, a finite sum. A series holds its ring and one
-//! denominator for all its coefficients, which stays one where the ring divides by itself (see [`Ring::FIELD`]).
+//! `u(theta) = c_0 + c_1 cos theta + s_1 sin theta + c_2 cos 2 theta + ...`, a finite sum. A series
+//! holds its ring and one denominator for all its coefficients, which stays one where the ring
+//! divides by itself (see [`Ring::FIELD`]).
 //!
 //! The three operations that perturbation methods live on: the product
-//! `2 cos i cos j = cos(i+j) + cos(i-j)`, the derivative, and the solution of `u'' + u = r`, whose resonant part
-//! `r_1 cos theta + q_1 sin theta` no periodic `u` can balance and which is handed back to the caller.
+//! `2 cos i cos j = cos(i+j) + cos(i-j)`, the derivative, and the solution of `u'' + u = r`, whose
+//! resonant part `r_1 cos theta + q_1 sin theta` no periodic `u` can balance and which is handed
+//! back to the caller.
 //!
 //! Two series that meet in an operation are over the same ring: the same prime, the same precision.
 
@@ -17,11 +19,13 @@ use num_traits::{One, Signed, Zero};
 use crate::exact::ring::{Doubles, Indivisible, Ring};
 use crate::exact::{Integer, Polynomial, Polynomials, Rational};
 
-/// A finite Fourier series. Equal functions are equal values in lowest terms, which every operation here ends with.
+/// A finite Fourier series. Equal functions are equal values in lowest terms, which every operation
+/// here ends with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FourierSeries<R: Ring> {
     ring: R,
-    /// Common denominator of all coefficients, positive; one over a field, but for what that cannot divide by.
+    /// Common denominator of all coefficients, positive; one over a field, but for what that cannot
+    /// divide by.
     denominator: Integer,
     /// Numerators of `cos k theta`, `k = 0, 1, ...`.
     cosine: Vec<R::Element>,
@@ -29,7 +33,8 @@ pub struct FourierSeries<R: Ring> {
     sine: Vec<R::Element>,
 }
 
-/// The part of a right-hand side at the natural frequency: `cosine cos theta + sine sin theta`, each a constant series.
+/// The part of a right-hand side at the natural frequency: `cosine cos theta + sine sin theta`,
+/// each a constant series.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resonance<R: Ring> {
     /// The coefficient of `cos theta`.
@@ -67,7 +72,8 @@ impl<R: Ring> FourierSeries<R> {
         Self::from_parts(ring, vec![], wave)
     }
 
-    /// The series with these coefficients of `cos k theta` and `sin k theta`, `k = 0, 1, ...`; `sine[0]` is ignored.
+    /// The series with these coefficients of `cos k theta` and `sin k theta`, `k = 0, 1, ...`;
+    /// `sine[0]` is ignored.
     pub fn from_parts(ring: R, cosine: Vec<R::Element>, mut sine: Vec<R::Element>) -> Self {
         if let Some(first) = sine.first_mut() {
             *first = ring.zero();
@@ -77,8 +83,14 @@ impl<R: Ring> FourierSeries<R> {
         series
     }
 
-    /// The series over a denominator that has nothing in common with all of its numerators; trailing zeros are dropped.
-    pub fn in_lowest_terms(ring: R, denominator: Integer, cosine: Vec<R::Element>, sine: Vec<R::Element>) -> Self {
+    /// The series over a denominator that has nothing in common with all of its numerators;
+    /// trailing zeros are dropped.
+    pub fn in_lowest_terms(
+        ring: R,
+        denominator: Integer,
+        cosine: Vec<R::Element>,
+        sine: Vec<R::Element>,
+    ) -> Self {
         let mut series = Self::raw(ring, cosine, sine);
         series.reduce();
         series.denominator = denominator;
@@ -104,12 +116,15 @@ impl<R: Ring> FourierSeries<R> {
         self.cosine.is_empty() && self.sine.is_empty()
     }
 
-    /// Whether nothing shows that the series is not zero: the same as [`FourierSeries::is_zero`] where coefficients are exact.
+    /// Whether nothing shows that the series is not zero: the same as [`FourierSeries::is_zero`]
+    /// where coefficients are exact.
     pub fn may_be_zero(&self) -> bool {
-        self.numerators().all(|numerator| self.ring.may_be_zero(numerator))
+        self.numerators()
+            .all(|numerator| self.ring.may_be_zero(numerator))
     }
 
-    /// Whether the ring could divide by everything it had to: over a field, whether no denominator is left.
+    /// Whether the ring could divide by everything it had to: over a field, whether no denominator
+    /// is left.
     ///
     /// # Errors
     /// The divisors that remain, as one product.
@@ -179,7 +194,9 @@ impl<R: Ring> FourierSeries<R> {
 
     /// The `exponent`-th power.
     pub fn power(&self, exponent: u32) -> Self {
-        (0..exponent).fold(Self::integer(self.ring.clone(), 1), |power, _| power.product(self))
+        (0..exponent).fold(Self::integer(self.ring.clone(), 1), |power, _| {
+            power.product(self)
+        })
     }
 
     /// The product with an integer.
@@ -195,7 +212,8 @@ impl<R: Ring> FourierSeries<R> {
         self.over(&divisor.into())
     }
 
-    /// As [`FourierSeries::divided_by`], for a divisor of any length: the fraction whose numerator this is.
+    /// As [`FourierSeries::divided_by`], for a divisor of any length: the fraction whose numerator
+    /// this is.
     ///
     /// # Panics
     /// If `denominator` is zero.
@@ -210,7 +228,8 @@ impl<R: Ring> FourierSeries<R> {
         series
     }
 
-    /// The quotient of two constant series, where the divisor is a unit of the ring times an integer; `None` otherwise.
+    /// The quotient of two constant series, where the divisor is a unit of the ring times an
+    /// integer; `None` otherwise.
     pub fn divided_by_constant(&self, divisor: &Self) -> Option<Self> {
         let (numerator, denominator) = divisor.mean();
         let (unit, integer) = self.ring.inverse(&numerator)?;
@@ -239,8 +258,8 @@ impl<R: Ring> FourierSeries<R> {
         series
     }
 
-    /// The periodic solution of `u'' + u = self` without first harmonic, and the resonant part left over:
-    /// `u_k = r_k / (1 - k^2)` for `k != 1`.
+    /// The periodic solution of `u'' + u = self` without first harmonic, and the resonant part left
+    /// over: `u_k = r_k / (1 - k^2)` for `k != 1`.
     pub fn solve_oscillator(&self) -> (Self, Resonance<R>) {
         let resonance = Resonance {
             cosine: self.cosine(1),
@@ -273,12 +292,15 @@ impl<R: Ring> FourierSeries<R> {
                 left.push((k, divisor));
             }
         }
-        let common = left.iter().fold(Integer::one(), |lcm, (_, divisor)| lcm.lcm(divisor));
+        let common = left
+            .iter()
+            .fold(Integer::one(), |lcm, (_, divisor)| lcm.lcm(divisor));
         if !left.is_empty() {
             let mut left = left.iter().peekable();
             for k in 0..=self.highest_harmonic() {
                 let divided = left.next_if(|(harmonic, _)| *harmonic == k);
-                let factor = divided.map_or_else(|| common.clone(), |(_, divisor)| &common / divisor);
+                let factor =
+                    divided.map_or_else(|| common.clone(), |(_, divisor)| &common / divisor);
                 for part in [&mut solution.cosine, &mut solution.sine] {
                     if let Some(coefficient) = part.get_mut(k) {
                         self.ring.scale_by(coefficient, &factor);
@@ -301,7 +323,11 @@ impl<R: Ring> FourierSeries<R> {
     }
 
     /// The same series over another ring.
-    pub fn map<S: Ring>(&self, ring: S, change: impl Fn(&R::Element, &Integer) -> S::Element) -> FourierSeries<S> {
+    pub fn map<S: Ring>(
+        &self,
+        ring: S,
+        change: impl Fn(&R::Element, &Integer) -> S::Element,
+    ) -> FourierSeries<S> {
         let all = |part: &[R::Element]| {
             part.iter()
                 .map(|coefficient| change(coefficient, &self.denominator))
@@ -344,8 +370,9 @@ impl<R: Ring> FourierSeries<R> {
         }
     }
 
-    /// Lowest terms: trailing zeros dropped and, where the ring cannot divide, the common factor of all numerators and
-    /// the denominator taken out. The only place where a greatest common divisor is computed.
+    /// Lowest terms: trailing zeros dropped and, where the ring cannot divide, the common factor of
+    /// all numerators and the denominator taken out. The only place where a greatest common divisor
+    /// is computed.
     fn reduce(&mut self) {
         for part in [&mut self.cosine, &mut self.sine] {
             let last = part.iter().rposition(|c| !self.ring.is_certainly_zero(c));
@@ -401,10 +428,13 @@ impl Factor {
 /// let sum = linear_combination(&Integers, &[(1, &one), (-2, &half)]);
 /// assert_eq!(sum, series(&[-3, 1, -1]));
 /// ```
-pub fn linear_combination<R: Ring>(ring: &R, terms: &[(i64, &FourierSeries<R>)]) -> FourierSeries<R> {
-    let common = terms
-        .iter()
-        .fold(Integer::one(), |lcm, (_, series)| lcm.lcm(&series.denominator));
+pub fn linear_combination<R: Ring>(
+    ring: &R,
+    terms: &[(i64, &FourierSeries<R>)],
+) -> FourierSeries<R> {
+    let common = terms.iter().fold(Integer::one(), |lcm, (_, series)| {
+        lcm.lcm(&series.denominator)
+    });
     let mut result = FourierSeries::zero(ring.clone());
     for (weight, series) in terms {
         let factor = Factor::new(*weight, &common, &series.denominator);
@@ -429,13 +459,18 @@ pub fn linear_combination<R: Ring>(ring: &R, terms: &[(i64, &FourierSeries<R>)])
 /// let sum = sum_of_products(&Integers, &[(3, &cosine, &cosine), (3, &sine, &sine)]);
 /// assert_eq!(sum, FourierSeries::constant(Integers, Integer::from(3)));
 /// ```
-pub fn sum_of_products<R: Ring>(ring: &R, terms: &[(i64, &FourierSeries<R>, &FourierSeries<R>)]) -> FourierSeries<R> {
+pub fn sum_of_products<R: Ring>(
+    ring: &R,
+    terms: &[(i64, &FourierSeries<R>, &FourierSeries<R>)],
+) -> FourierSeries<R> {
     let terms: Vec<_> = terms
         .iter()
         .filter(|(_, left, right)| !left.is_zero() && !right.is_zero())
         .map(|&(weight, left, right)| (weight, left, right, &left.denominator * &right.denominator))
         .collect();
-    let common = terms.iter().fold(Integer::one(), |lcm, term| lcm.lcm(&term.3));
+    let common = terms
+        .iter()
+        .fold(Integer::one(), |lcm, term| lcm.lcm(&term.3));
     let highest = terms
         .iter()
         .map(|(_, left, right, _)| left.highest_harmonic() + right.highest_harmonic())
@@ -458,9 +493,12 @@ pub fn sum_of_products<R: Ring>(ring: &R, terms: &[(i64, &FourierSeries<R>, &Fou
 }
 
 impl<R: Ring> FourierSeries<R> {
-    /// Adds `2 * left * right` of the numerators, so that the halves of `2 cos i cos j = cos(i+j) + cos(i-j)` stay whole.
+    /// Adds `2 * left * right` of the numerators, so that the halves of
+    /// `2 cos i cos j = cos(i+j) + cos(i-j)` stay whole.
     fn add_doubled_product(&mut self, left: &Self, right: &Self) {
-        let Self { ring, cosine, sine, .. } = self;
+        let Self {
+            ring, cosine, sine, ..
+        } = self;
         for_each_product(ring, &left.cosine, &right.cosine, |i, j, product| {
             ring.accumulate(&mut cosine[i + j], &product);
             ring.add(&mut cosine[i.abs_diff(j)], product);
@@ -478,7 +516,9 @@ impl<R: Ring> FourierSeries<R> {
             ring.add(&mut sine[i.abs_diff(j)], product);
         };
         for_each_product(ring, &left.cosine, &right.sine, &mut mixed);
-        for_each_product(ring, &left.sine, &right.cosine, |i, j, product| mixed(j, i, product));
+        for_each_product(ring, &left.sine, &right.cosine, |i, j, product| {
+            mixed(j, i, product)
+        });
         if let Some(first) = sine.first_mut() {
             *first = ring.zero();
         }
@@ -499,7 +539,12 @@ fn for_each_product<R: Ring>(
     }
 }
 
-fn add_scaled<R: Ring>(ring: &R, target: &mut Vec<R::Element>, source: &[R::Element], factor: &Factor) {
+fn add_scaled<R: Ring>(
+    ring: &R,
+    target: &mut Vec<R::Element>,
+    source: &[R::Element],
+    factor: &Factor,
+) {
     if target.len() < source.len() {
         target.resize(source.len(), ring.zero());
     }
@@ -528,7 +573,8 @@ impl FourierSeries<Polynomials> {
 
     /// The coefficients of every harmonic that occurs: `(k, cosine, sine)`.
     pub fn harmonics(&self) -> Vec<(usize, Polynomial, Polynomial)> {
-        let coefficient = |part: &[Polynomial], k: usize| part.get(k).cloned().unwrap_or_else(Polynomial::zero);
+        let coefficient =
+            |part: &[Polynomial], k: usize| part.get(k).cloned().unwrap_or_else(Polynomial::zero);
         (0..=self.highest_harmonic())
             .map(|k| (k, coefficient(&self.cosine, k), coefficient(&self.sine, k)))
             .filter(|(_, cosine, sine)| !(cosine.is_zero() && sine.is_zero()))
@@ -539,7 +585,12 @@ impl FourierSeries<Polynomials> {
 impl FourierSeries<Doubles> {
     /// Every coefficient changed by a function of its harmonic.
     pub fn by_harmonic(&self, change: impl Fn(usize, f64) -> f64) -> Self {
-        let all = |part: &[f64]| part.iter().enumerate().map(|(k, &value)| change(k, value)).collect();
+        let all = |part: &[f64]| {
+            part.iter()
+                .enumerate()
+                .map(|(k, &value)| change(k, value))
+                .collect()
+        };
         Self::from_parts(Doubles, all(&self.cosine), all(&self.sine))
     }
 
@@ -549,11 +600,15 @@ impl FourierSeries<Doubles> {
         self.evaluate_at(cosine, sine)
     }
 
-    /// The value where `cos(theta)` and `sin(theta)` are these, without further sines: harmonic by harmonic the point turns on.
+    /// The value where `cos(theta)` and `sin(theta)` are these, without further sines: harmonic by
+    /// harmonic the point turns on.
     pub fn evaluate_at(&self, cosine: f64, sine: f64) -> f64 {
         let (mut c, mut s, mut sum) = (1.0, 0.0, 0.0);
         for k in 0..self.cosine.len().max(self.sine.len()) {
-            sum += self.cosine.get(k).map_or(0.0, |coefficient| coefficient * c);
+            sum += self
+                .cosine
+                .get(k)
+                .map_or(0.0, |coefficient| coefficient * c);
             sum += self.sine.get(k).map_or(0.0, |coefficient| coefficient * s);
             (c, s) = (c * cosine - s * sine, s * cosine + c * sine);
         }
@@ -561,7 +616,8 @@ impl FourierSeries<Doubles> {
     }
 }
 
-/// A quotient of integers as a fraction, for [`FourierSeries::map`] from numerators to [`Rational`].
+/// A quotient of integers as a fraction, for [`FourierSeries::map`] from numerators to
+/// [`Rational`].
 pub fn fraction(numerator: &Integer, denominator: &Integer) -> Rational {
     match denominator.is_one() {
         true => Rational::from_integer(numerator.clone()),

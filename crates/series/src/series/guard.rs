@@ -4,8 +4,9 @@
 //! sgn(c u) = sgn(c) sgn(u)        u - x - d,   x + d - u,   k*(u - x) - k*d    are one guard
 //! ```
 //!
-//! A contact of two bodies stands in the equations of both, with either sign, and in what a derivative makes of it: if its occurrences were
-//! switched one after the other, rounding could leave some of them behind.
+//! A contact of two bodies stands in the equations of both, with either sign, and in what a
+//! derivative makes of it: if its occurrences were switched one after the other, rounding could
+//! leave some of them behind.
 
 use std::collections::BTreeMap;
 
@@ -28,7 +29,8 @@ impl Guard {
         let mut terms = BTreeMap::new();
         for term in written_out.terms() {
             let (number_before, factors) = term.factors();
-            let (numbers, others): (Vec<&Expr>, Vec<&Expr>) = factors.iter().partition(|factor| is_number(factor));
+            let (numbers, others): (Vec<&Expr>, Vec<&Expr>) =
+                factors.iter().partition(|factor| is_number(factor));
             let product = |factors: Vec<&Expr>| Expr::product(factors.into_iter().cloned());
             let coefficient = Expr::number(number_before) * product(numbers);
             let (rest, coefficient) = match number(&coefficient) {
@@ -41,7 +43,8 @@ impl Guard {
         Self { terms }
     }
 
-    /// The number that this guard is times another; `None` where they are not in proportion, or one of them is zero.
+    /// The number that this guard is times another; `None` where they are not in proportion, or one
+    /// of them is zero.
     pub fn ratio_to(&self, other: &Self) -> Option<f64> {
         /// The relative difference that rounding leaves between ratios that are equal.
         const ROUNDING: f64 = 1e-14;
@@ -51,7 +54,9 @@ impl Guard {
             .zip(&other.terms)
             .map(|((term, one), (same, other))| (term == same).then_some(one / other));
         let first = ratios.next()??;
-        let alike = |ratio: Option<f64>| ratio.is_some_and(|ratio| (ratio - first).abs() <= ROUNDING * first.abs());
+        let alike = |ratio: Option<f64>| {
+            ratio.is_some_and(|ratio| (ratio - first).abs() <= ROUNDING * first.abs())
+        };
         (self.terms.len() == other.terms.len() && ratios.all(alike)).then_some(first)
     }
 }
@@ -87,7 +92,9 @@ impl Guards {
     pub fn find_or_add(&mut self, argument: &Expr) -> GuardUse {
         let guard = Guard::new(argument, &self.values);
         let mut ratios = self.known.iter().enumerate();
-        if let Some((index, ratio)) = ratios.find_map(|(index, known)| Some((index, guard.ratio_to(known)?))) {
+        if let Some((index, ratio)) =
+            ratios.find_map(|(index, known)| Some((index, guard.ratio_to(known)?)))
+        {
             return GuardUse {
                 index,
                 is_new: false,

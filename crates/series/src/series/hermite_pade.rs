@@ -1,17 +1,19 @@
-//! Hermite-Padé approximants: polynomials that make a combination of power series vanish to an order as high as their number of
-//! coefficients allows.
+//! Hermite-Padé approximants: polynomials that make a combination of power series vanish to an
+//! order as high as their number of coefficients allows.
 //!
-//! References: B. Beckermann, G. Labahn, *A uniform approach for the fast computation of matrix-type Padé approximants*, SIAM J.
-//! Matrix Anal. Appl. 15 (1994) 804-823; G. A. Baker, P. Graves-Morris, *Padé Approximants*, 2nd ed., Cambridge 1996, section 8.5.
+//! References: B. Beckermann, G. Labahn, *A uniform approach for the fast computation of
+//! matrix-type Padé approximants*, SIAM J. Matrix Anal. Appl. 15 (1994) 804-823; G. A. Baker, P.
+//! Graves-Morris, *Padé Approximants*, 2nd ed., Cambridge 1996, section 8.5.
 //!
 //! ```text
 //! p_1 f_1 + ... + p_m f_m = O(s^n),   deg p_l <= d_l,   n = d_1 + ... + d_m + m - 1
 //! Padé: f, -1      quadratic: 1, f, f^2      differential: 1, f, f'
 //! ```
 //!
-//! One more power of `s` at a time: of `m` combinations that vanish to an order, one loses its next power by a factor `s`, and the
-//! others by subtracting a multiple of that one. The one that has most room below its degrees is taken. What comes out on the way are
-//! the approximants to all lower orders. Cost: `3 m n^2/2` products.
+//! One more power of `s` at a time: of `m` combinations that vanish to an order, one loses its next
+//! power by a factor `s`, and the others by subtracting a multiple of that one. The one that has
+//! most room below its degrees is taken. What comes out on the way are the approximants to all
+//! lower orders. Cost: `3 m n^2/2` products.
 
 pub mod by_primes;
 
@@ -28,9 +30,11 @@ pub(crate) trait Field {
     fn quotient(&self, numerator: &Self::Element, denominator: &Self::Element) -> Self::Element;
     /// `number -= factor other`.
     fn subtract(&self, number: &mut Self::Element, factor: &Self::Element, other: &Self::Element);
-    /// The binary exponent of the size; `None` for zero. Where sizes mean nothing the same for all others.
+    /// The binary exponent of the size; `None` for zero. Where sizes mean nothing the same for all
+    /// others.
     fn exponent(&self, number: &Self::Element) -> Option<i64>;
-    /// By how many binary digits a number must be smaller than what it is made of to be taken for zero; `None` where numbers are exact.
+    /// By how many binary digits a number must be smaller than what it is made of to be taken for
+    /// zero; `None` where numbers are exact.
     fn noise(&self) -> Option<i64>;
 }
 
@@ -89,14 +93,22 @@ impl<F: Field> HermitePade<F> {
 
     /// One order more; nothing where the series have no further coefficient.
     pub fn advance(&mut self) {
-        let leading: Vec<Option<i64>> = self.combinations.iter().map(|own| self.leading(own)).collect();
+        let leading: Vec<Option<i64>> = self
+            .combinations
+            .iter()
+            .map(|own| self.leading(own))
+            .collect();
         let candidates = self.combinations.iter().zip(&leading).enumerate();
         let pivot = candidates
             .filter_map(|(place, (own, exponent))| Some((own.room, (*exponent)?, place)))
             .max_by_key(|(room, exponent, place)| (*room, *exponent, std::cmp::Reverse(*place)));
         self.order += 1;
         let Some((_, _, pivot)) = pivot else {
-            for combination in self.combinations.iter_mut().filter(|own| !own.remainder.is_empty()) {
+            for combination in self
+                .combinations
+                .iter_mut()
+                .filter(|own| !own.remainder.is_empty())
+            {
                 combination.remainder.remove(0);
             }
             return;
@@ -106,7 +118,9 @@ impl<F: Field> HermitePade<F> {
         leading.remove(pivot);
         for (combination, leading) in self.combinations.iter_mut().zip(leading) {
             if leading.is_some() {
-                let factor = self.field.quotient(&combination.remainder[0], &chosen.remainder[0]);
+                let factor = self
+                    .field
+                    .quotient(&combination.remainder[0], &chosen.remainder[0]);
                 let pairs = combination.factors.iter_mut().zip(&chosen.factors);
                 for (own, other) in pairs {
                     own.resize(own.len().max(other.len()), self.field.zero());
@@ -114,7 +128,11 @@ impl<F: Field> HermitePade<F> {
                         self.field.subtract(number, &factor, other);
                     }
                 }
-                let pairs = combination.remainder.iter_mut().zip(&chosen.remainder).skip(1);
+                let pairs = combination
+                    .remainder
+                    .iter_mut()
+                    .zip(&chosen.remainder)
+                    .skip(1);
                 for (number, other) in pairs {
                     self.field.subtract(number, &factor, other);
                 }
@@ -123,7 +141,11 @@ impl<F: Field> HermitePade<F> {
         }
         // The factor s moves the remainder up by one place, and the order has moved with it.
         chosen.remainder.pop();
-        for factor in chosen.factors.iter_mut().filter(|factor| !factor.is_empty()) {
+        for factor in chosen
+            .factors
+            .iter_mut()
+            .filter(|factor| !factor.is_empty())
+        {
             factor.insert(0, self.field.zero());
         }
         chosen.room -= 1;
@@ -137,7 +159,9 @@ impl<F: Field> HermitePade<F> {
             return Some(exponent);
         };
         let numbers = combination.factors.iter().flatten();
-        let largest = numbers.filter_map(|number| self.field.exponent(number)).max()?;
+        let largest = numbers
+            .filter_map(|number| self.field.exponent(number))
+            .max()?;
         (exponent > largest - noise).then_some(exponent)
     }
 }

@@ -1,11 +1,13 @@
 //! An expression as a list of recurrences for its Taylor coefficients, each part once.
 //!
-//! In: the names of the variables, numbers for every other symbol, expressions. Out: a [`Tape`] that computes the series of each
-//! expression, one order beyond those of the variables given so far, so that a differential equation can feed its rates back; or,
-//! by [`numeric_taylor`], the series in one variable.
+//! In: the names of the variables, numbers for every other symbol, expressions. Out: a [`Tape`]
+//! that computes the series of each expression, one order beyond those of the variables given so
+//! far, so that a differential equation can feed its rates back; or, by [`numeric_taylor`], the
+//! series in one variable.
 //!
-//! References: A. Griewank, A. Walther, *Evaluating Derivatives*, 2nd ed., SIAM 2008, chapter 13; E. Hairer, S. P. Norsett,
-//! G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., section I.8. The recurrences themselves are in [`super::tape`].
+//! References: A. Griewank, A. Walther, *Evaluating Derivatives*, 2nd ed., SIAM 2008, chapter 13;
+//! E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed.,
+//! section I.8. The recurrences themselves are in [`super::tape`].
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -33,7 +35,8 @@ pub enum RecurrenceError {
 
 /// A tape in the making.
 ///
-/// A series is named by its place: the variables come first, in their order; [`add`](Self::add) says where the others are.
+/// A series is named by its place: the variables come first, in their order; [`add`](Self::add)
+/// says where the others are.
 #[derive(Clone, Debug)]
 pub struct Recurrences {
     tape: Tape,
@@ -59,9 +62,13 @@ fn even(base: f64, exponent: f64) -> f64 {
 }
 
 impl Recurrences {
-    /// Series up to `s^degree` in these variables, each with the order beyond which it is zero, if it is: 0 for a parameter, 1 for
-    /// time. `numbers` has the value of every other symbol.
-    pub fn new(variables: &[(Symbol, Option<usize>)], numbers: &BTreeMap<Symbol, f64>, degree: usize) -> Self {
+    /// Series up to `s^degree` in these variables, each with the order beyond which it is zero, if
+    /// it is: 0 for a parameter, 1 for time. `numbers` has the value of every other symbol.
+    pub fn new(
+        variables: &[(Symbol, Option<usize>)],
+        numbers: &BTreeMap<Symbol, f64>,
+        degree: usize,
+    ) -> Self {
         let mut tape = Tape::new(degree);
         for (_, degree) in variables {
             tape.given(*degree);
@@ -115,7 +122,8 @@ impl Recurrences {
         if let Some(place) = self.products.get(&key) {
             return *place;
         }
-        // The shorter series first, and of two long ones the one computed later: its last coefficient is needed last.
+        // The shorter series first, and of two long ones the one computed later: its last
+        // coefficient is needed last.
         let (short, long) = match self.tape.degree(key.0) < self.tape.degree(key.1) {
             true => key,
             false => (key.1, key.0),
@@ -144,7 +152,9 @@ impl Recurrences {
     fn slope(&mut self, mut of: usize) -> usize {
         // A number beside it makes no difference.
         while let Operation::Sum(terms) = self.tape.operation(of) {
-            let mut changing = terms.iter().filter(|(_, place)| !self.tape.is_number(*place));
+            let mut changing = terms
+                .iter()
+                .filter(|(_, place)| !self.tape.is_number(*place));
             match (changing.next(), changing.next()) {
                 (Some((weight, place)), None) if self.tape.is_one(*weight) => of = *place,
                 _ => break,
@@ -167,7 +177,9 @@ impl Recurrences {
             (Node::Pi, _) => self.constant(std::f64::consts::PI),
             (Node::Symbol(symbol), _) => self.symbol(*symbol)?,
             (Node::Sum(_), _) => self.sum(children),
-            (Node::Product(coefficient, factors), _) => self.product(coefficient, factors, children),
+            (Node::Product(coefficient, factors), _) => {
+                self.product(coefficient, factors, children)
+            }
             (Node::Power(_, exponent), [base, exponent_place]) => match exponent.as_number() {
                 Some(exponent) => self.power(*base, exponent),
                 None => {
@@ -190,7 +202,11 @@ impl Recurrences {
     }
 
     fn symbol(&mut self, symbol: Symbol) -> Result<usize, RecurrenceError> {
-        if let Some(place) = self.variables.iter().position(|variable| *variable == symbol) {
+        if let Some(place) = self
+            .variables
+            .iter()
+            .position(|variable| *variable == symbol)
+        {
             return Ok(place);
         }
         match self.numbers.get(&symbol) {
@@ -220,7 +236,10 @@ impl Recurrences {
     fn product(&mut self, coefficient: &Rational, factors: &[Expr], places: &[usize]) -> usize {
         // A step gates the others: where it is zero they need no value.
         let is_gate = |expr: &Expr| matches!(expr.node(), Node::Function(Function::Step, _));
-        let open = factors.iter().zip(places).filter(|(factor, _)| !is_gate(factor));
+        let open = factors
+            .iter()
+            .zip(places)
+            .filter(|(factor, _)| !is_gate(factor));
         // Numbers first and by themselves: what changes may be shared with another product.
         let (numbers, changing): (Vec<usize>, Vec<usize>) = open
             .map(|(_, place)| *place)
@@ -241,7 +260,11 @@ impl Recurrences {
             Some(product) if coefficient == 1.0 => product,
             Some(product) => self.scale(coefficient, product),
         };
-        for (_, place) in factors.iter().zip(places).filter(|(factor, _)| is_gate(factor)) {
+        for (_, place) in factors
+            .iter()
+            .zip(places)
+            .filter(|(factor, _)| is_gate(factor))
+        {
             if let Operation::Choose {
                 corner,
                 positive,
@@ -259,7 +282,10 @@ impl Recurrences {
     }
 
     fn power(&mut self, base: usize, exponent: &Rational) -> usize {
-        let whole = exponent.is_integer().then(|| exponent.numer().abs().to_u64()).flatten();
+        let whole = exponent
+            .is_integer()
+            .then(|| exponent.numer().abs().to_u64())
+            .flatten();
         if let Some(mut left) = whole {
             let (mut square, mut result) = (base, None);
             while left > 0 {
@@ -364,8 +390,14 @@ impl Recurrences {
         self.weighted(&[(1.0, one), (sign, square)])
     }
 
-    /// `y' = sign*u'/(1 + square*u^2)^(1/2)`: inverse sine and cosine, and the inverse hyperbolic sine.
-    fn inverse_wave(&mut self, of: usize, [sign, square]: [f64; 2], first: fn(f64) -> f64) -> usize {
+    /// `y' = sign*u'/(1 + square*u^2)^(1/2)`: inverse sine and cosine, and the inverse hyperbolic
+    /// sine.
+    fn inverse_wave(
+        &mut self,
+        of: usize,
+        [sign, square]: [f64; 2],
+        first: fn(f64) -> f64,
+    ) -> usize {
         let base = self.one_and_square(of, square);
         let root = self.emit(Operation::Power {
             base,
@@ -395,8 +427,14 @@ impl Recurrences {
         })
     }
 
-    /// A function with a corner, by its arguments and the places of their series; `None` for any other.
-    fn corner(&mut self, function: Function, arguments: &[Expr], [u, v]: [usize; 2]) -> Option<usize> {
+    /// A function with a corner, by its arguments and the places of their series; `None` for any
+    /// other.
+    fn corner(
+        &mut self,
+        function: Function,
+        arguments: &[Expr],
+        [u, v]: [usize; 2],
+    ) -> Option<usize> {
         let [first, ..] = arguments else { return None };
         Some(match function {
             Function::Absolute => {
@@ -445,8 +483,9 @@ impl Recurrences {
     }
 }
 
-/// The coefficients of `s^0` to `s^degree` of an expression with `coordinate = centre + scale*s` and no other symbol; `None`
-/// where it is not analytic there, contains another symbol, or a coefficient is out of range.
+/// The coefficients of `s^0` to `s^degree` of an expression with `coordinate = centre + scale*s`
+/// and no other symbol; `None` where it is not analytic there, contains another symbol, or a
+/// coefficient is out of range.
 ///
 /// ```
 /// # use lindstedt_series as lindstedt;
@@ -456,7 +495,13 @@ impl Recurrences {
 /// assert_eq!(numeric_taylor(&root, "x".into(), 4.0, 8.0, 2), Some(vec![2.0, 2.0, -1.0]));
 /// assert_eq!(numeric_taylor(&root, "x".into(), 0.0, 1.0, 2), None);
 /// ```
-pub fn numeric_taylor(expr: &Expr, coordinate: Symbol, centre: f64, scale: f64, degree: usize) -> Option<Vec<f64>> {
+pub fn numeric_taylor(
+    expr: &Expr,
+    coordinate: Symbol,
+    centre: f64,
+    scale: f64,
+    degree: usize,
+) -> Option<Vec<f64>> {
     let mut recurrences = Recurrences::new(&[(coordinate, Some(1))], &BTreeMap::new(), degree);
     let place = recurrences.add(expr).ok()?;
     let mut tape = recurrences.into_tape();
@@ -522,7 +567,10 @@ mod tests {
         }
         // Powers beyond the degree, where the base is zero.
         let high = parse_expression("x + x^10000").expect("powers");
-        assert_eq!(numeric_taylor(&high, x, 0.0, 1.0, 2), Some(vec![0.0, 1.0, 0.0]));
+        assert_eq!(
+            numeric_taylor(&high, x, 0.0, 1.0, 2),
+            Some(vec![0.0, 1.0, 0.0])
+        );
     }
 
     /// What occurs twice is computed once, and sine and cosine come together.
@@ -531,11 +579,16 @@ mod tests {
         let count = |texts: &[&str]| {
             let mut recurrences = Recurrences::new(&[("x".into(), None)], &BTreeMap::new(), 1);
             for text in texts {
-                recurrences.add(&parse_expression(text).expect(text)).expect(text);
+                recurrences
+                    .add(&parse_expression(text).expect(text))
+                    .expect(text);
             }
             recurrences.tape.size()
         };
         assert_eq!(count(&["sin(x)"]), count(&["sin(x)", "cos(x)", "sin(x)"]));
-        assert_eq!(count(&["sgn(x)*exp(x^2)", "exp(x^2)"]), count(&["sgn(x)*exp(x^2)"]));
+        assert_eq!(
+            count(&["sgn(x)*exp(x^2)", "exp(x^2)"]),
+            count(&["sgn(x)*exp(x^2)"])
+        );
     }
 }

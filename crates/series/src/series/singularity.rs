@@ -1,23 +1,27 @@
 //! The singularities on the circle of convergence of a power series with exact coefficients.
 //!
-//! References: D. L. Hunter, G. A. Baker, Phys. Rev. B 19 (1979) 3808-3821 (inhomogeneous differential approximants); R. E. Shafer,
-//! SIAM J. Numer. Anal. 11 (1974) 447-460 (quadratic approximants).
+//! References: D. L. Hunter, G. A. Baker, Phys. Rev. B 19 (1979) 3808-3821 (inhomogeneous
+//! differential approximants); R. E. Shafer, SIAM J. Numer. Anal. 11 (1974) 447-460 (quadratic
+//! approximants).
 //!
 //! ```text
 //! quadratic:     P + Q f + R f^2 = O(s^n)    branch points where D = Q^2 - 4 P R = 0, like (s - s_0)^(1/2)
 //! differential:  P g' + Q g + R = O(s^n)     singular where P = 0, like (s - s_0)^(-Q/P');  g = f, or g = f^(-1/2)
 //! ```
 //!
-//! With omega^2 for `f` the last is the period, which has a logarithm where a motion takes for ever, and the differential approximants
-//! take that as it is. All three kinds of approximant are made of all coefficients, and of fewer and fewer. Zeros
-//! that are no singularities of the series, and there are many, move from one to the next; one that stays is believed, and how far it
-//! moves is the estimate of its error. Which kind converges fastest is seen by that. Where several kinds have found it they must agree
-//! within their errors, or the error is what they differ by.
+//! With omega^2 for `f` the last is the period, which has a logarithm where a motion takes for
+//! ever, and the differential approximants take that as it is. All three kinds of approximant are
+//! made of all coefficients, and of fewer and fewer. Zeros that are no singularities of the series,
+//! and there are many, move from one to the next; one that stays is believed, and how far it moves
+//! is the estimate of its error. Which kind converges fastest is seen by that. Where several kinds
+//! have found it they must agree within their errors, or the error is what they differ by.
 //!
-//! A zero of `f` is singular for `f^(-1/2)`, with the power -1/2, -1, -3/2, ..., and not for `f`: it is left out. What is left must be
-//! what the coefficients show, `|c_k| ~ k^(-e-1)/R^k` for a power `e` on the circle `|s| = R`: one that would make them larger than they
-//! are is none, and one of them at least must make them as large as they are. Coefficients that fall [faster than the powers of any
-//! number](is_entire), or [end](last_power), belong to a function without a singularity.
+//! A zero of `f` is singular for `f^(-1/2)`, with the power -1/2, -1, -3/2, ..., and not for `f`:
+//! it is left out. What is left must be what the coefficients show, `|c_k| ~ k^(-e-1)/R^k` for a
+//! power `e` on the circle `|s| = R`: one that would make them larger than they are is none, and
+//! one of them at least must make them as large as they are. Coefficients that fall
+//! [faster than the powers of any number](is_entire), or [end](last_power), belong to a function
+//! without a singularity.
 
 use std::cmp::Ordering;
 use std::fmt;
@@ -46,20 +50,22 @@ pub struct Estimate {
 pub struct Singularity {
     /// Its distance from zero.
     pub radius: Estimate,
-    /// Its angle in the upper half plane: exactly zero on the positive axis; on the negative one pi, with the error zero.
+    /// Its angle in the upper half plane: exactly zero on the positive axis; on the negative one
+    /// pi, with the error zero.
     pub angle: Estimate,
     /// Real and imaginary part.
     pub place: [Estimate; 2],
-    /// The power of the distance from it with which `f^(-1/2)` is singular there, the period for `f` = omega^2, as far as that could be
-    /// told: 1/2 for a square root, 0 for a logarithm.
+    /// The power of the distance from it with which `f^(-1/2)` is singular there, the period for
+    /// `f` = omega^2, as far as that could be told: 1/2 for a square root, 0 for a logarithm.
     pub exponent: Option<Estimate>,
 }
 
 /// The fewest coefficients that say anything.
 pub const FEWEST: usize = 16;
 
-/// The nearest singularity of a series with these coefficients, the lowest power first; `None` where they show none: too few of
-/// them, too irregular, or several singularities that are equally far away.
+/// The nearest singularity of a series with these coefficients, the lowest power first; `None`
+/// where they show none: too few of them, too irregular, or several singularities that are equally
+/// far away.
 ///
 /// ```
 /// # use lindstedt_series as lindstedt;
@@ -115,7 +121,8 @@ impl Growth {
             return None;
         }
         let size = |(k, value): (usize, &Rational)| Some((k, logarithm(value)?));
-        let mut sizes: Vec<(usize, f64)> = coefficients.iter().enumerate().filter_map(size).collect();
+        let mut sizes: Vec<(usize, f64)> =
+            coefficients.iter().enumerate().filter_map(size).collect();
         let last = sizes.iter().filter(|(k, _)| *k > 0 && k + LAST > highest);
         let root = last.map(|(k, size)| -size / *k as f64).reduce(f64::min)?;
         let unit = (root / std::f64::consts::LN_2).round();
@@ -136,8 +143,9 @@ impl Growth {
         (size / self.radius).ln().abs() <= self.margin
     }
 
-    /// The power of `k` with which `|c_k| radius^k` grows: of a singularity like `(s - s_0)^e` on the circle it is `-e - 1`. By the
-    /// largest of the last quarter and of the quarter before, for those of a pair go up and down.
+    /// The power of `k` with which `|c_k| radius^k` grows: of a singularity like `(s - s_0)^e` on
+    /// the circle it is `-e - 1`. By the largest of the last quarter and of the quarter before, for
+    /// those of a pair go up and down.
     fn power(&self, radius: f64) -> Option<f64> {
         let highest = self.sizes.last()?.0 as f64;
         let largest = |from: f64, to: f64| {
@@ -157,7 +165,8 @@ fn logarithm(value: &Rational) -> Option<f64> {
     Some(Scaled::of_fraction(value).logarithm()).filter(|logarithm| logarithm.is_finite())
 }
 
-/// The last power of a series that ends, with as many coefficients that vanish behind it as there are up to it; `None` of all others.
+/// The last power of a series that ends, with as many coefficients that vanish behind it as there
+/// are up to it; `None` of all others.
 ///
 /// ```
 /// # use lindstedt_series as lindstedt;
@@ -173,9 +182,11 @@ pub fn last_power(coefficients: &[Rational]) -> Option<usize> {
     (coefficients.len() > FEWEST && 2 * (last + 1) <= coefficients.len()).then_some(last)
 }
 
-/// Whether the coefficients fall faster than the powers of any number: the function has no singularity then, and its series converges
-/// everywhere. The slope of `-log |c_k|` is `log R + p/k` on a circle of convergence; where there is none it grows with `log k`, by as
-/// much over one doubling of k as over the next. What is left when a sixth and a third of the coefficients are taken away must say so too.
+/// Whether the coefficients fall faster than the powers of any number: the function has no
+/// singularity then, and its series converges everywhere. The slope of `-log |c_k|` is
+/// `log R + p/k` on a circle of convergence; where there is none it grows with `log k`, by as much
+/// over one doubling of k as over the next. What is left when a sixth and a third of the
+/// coefficients are taken away must say so too.
 pub fn is_entire(coefficients: &[Rational]) -> bool {
     /// The fewest coefficients that show it.
     const FEWEST: usize = 24;
@@ -258,9 +269,13 @@ impl Complex {
         &(&self.re * &self.re) + &(&self.im * &self.im)
     }
 
-    /// How far away another number is; in doubles, which reach down to where nothing matters any more.
+    /// How far away another number is; in doubles, which reach down to where nothing matters any
+    /// more.
     fn distance(&self, other: &Self) -> f64 {
-        (self - other).squared_size().sqrt().map_or(0.0, |size| size.to_f64())
+        (self - other)
+            .squared_size()
+            .sqrt()
+            .map_or(0.0, |size| size.to_f64())
     }
 
     /// The quotient; zero where the divisor is.
@@ -350,7 +365,11 @@ struct Approximant {
 }
 
 /// The approximants to orders so far below the highest.
-fn approximants(kind: Kind, coefficients: &[BigFloat], below: &[usize]) -> Vec<(usize, Approximant)> {
+fn approximants(
+    kind: Kind,
+    coefficients: &[BigFloat],
+    below: &[usize],
+) -> Vec<(usize, Approximant)> {
     let bits = coefficients[0].bits();
     let field = Floats { bits };
     let length = kind.length(coefficients.len());
@@ -372,7 +391,9 @@ fn approximants(kind: Kind, coefficients: &[BigFloat], below: &[usize]) -> Vec<(
     while work.order() < length {
         work.advance();
         if below.contains(&(length - work.order())) {
-            let [p, q, r] = &work.best().factors[..] else { continue };
+            let [p, q, r] = &work.best().factors[..] else {
+                continue;
+            };
             let approximant = match kind {
                 Kind::Quadratic => {
                     let all = usize::MAX;
@@ -382,7 +403,10 @@ fn approximants(kind: Kind, coefficients: &[BigFloat], below: &[usize]) -> Vec<(
                         zero.resize(zero.len().max(place + 1), BigFloat::zero(bits));
                         zero[place] = &zero[place] - &(&four * value);
                     }
-                    Approximant { zero, beside: vec![] }
+                    Approximant {
+                        zero,
+                        beside: vec![],
+                    }
                 }
                 Kind::Differential | Kind::OfInverseRoot => Approximant {
                     zero: r.clone(),
@@ -395,7 +419,8 @@ fn approximants(kind: Kind, coefficients: &[BigFloat], below: &[usize]) -> Vec<(
     found
 }
 
-/// `f^(-1/2)` over the root of its first coefficient: `n c_0 g_n = sum_(k=1..n) (k/2 - n) c_k g_(n-k)`.
+/// `f^(-1/2)` over the root of its first coefficient:
+/// `n c_0 g_n = sum_(k=1..n) (k/2 - n) c_k g_(n-k)`.
 fn inverse_root(coefficients: &[BigFloat]) -> Vec<BigFloat> {
     let bits = coefficients[0].bits();
     let mut root = vec![BigFloat::of_f64(1.0, bits)];
@@ -448,22 +473,27 @@ impl Followed {
         }
     }
 
-    /// The order of a zero of f: there `f^(-1/2)` has the power -1/2, -1, ... and the motion takes for ever, but omega^2 goes through.
+    /// The order of a zero of f: there `f^(-1/2)` has the power -1/2, -1, ... and the motion takes
+    /// for ever, but omega^2 goes through.
     fn order_of_zero(&self) -> Option<f64> {
         let (value, error) = self.exponent.filter(|_| self.kind == Kind::OfInverseRoot)?;
         let order = (-2.0 * value).round();
-        (order >= 1.0 && (-2.0 * value - order).abs() <= (4.0 * error).max(WORST_POWER)).then_some(order)
+        (order >= 1.0 && (-2.0 * value - order).abs() <= (4.0 * error).max(WORST_POWER))
+            .then_some(order)
     }
 
     /// Whether f is regular there, as far as this approximant and the zeros of f can tell.
     fn is_regular(&self, zeros: &[(Complex64, f64)]) -> bool {
         match (self.kind, self.exponent) {
-            (Kind::OfInverseRoot, Some((_, error))) => error > WORST_POWER || self.order_of_zero().is_some(),
+            (Kind::OfInverseRoot, Some((_, error))) => {
+                error > WORST_POWER || self.order_of_zero().is_some()
+            }
             (Kind::OfInverseRoot, None) => true,
             // The power of the zero itself; what is singular at a zero has another one.
             (Kind::Differential, Some((value, _))) => {
                 let place = self.place.to_f64();
-                let here = |zero: &&(Complex64, f64)| (zero.0 - place).norm() <= MOVES * place.norm();
+                let here =
+                    |zero: &&(Complex64, f64)| (zero.0 - place).norm() <= MOVES * place.norm();
                 zeros
                     .iter()
                     .filter(here)
@@ -519,11 +549,15 @@ fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Vec<Follo
         let (_, end) = zeros.pop()?;
         let error_of = |distance: &dyn Fn(&Zero, &Zero) -> f64| {
             let farthest = |from: usize, to: usize| {
-                let some = zeros.iter().filter(|(below, _)| (from..=to).contains(below));
-                some.map(|(_, zero)| distance(zero, &end)).fold(0.0, f64::max)
+                let some = zeros
+                    .iter()
+                    .filter(|(below, _)| (from..=to).contains(below));
+                some.map(|(_, zero)| distance(zero, &end))
+                    .fold(0.0, f64::max)
             };
             let (recent, before) = (farthest(0, window), farthest(window + 1, 2 * window));
-            // What converges slowly is farther away than its last steps by how much longer the way is.
+            // What converges slowly is farther away than its last steps by how much longer the way
+            // is.
             if 8.0 * recent <= before {
                 FAST * recent
             } else {
@@ -546,7 +580,9 @@ fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Vec<Follo
     };
     let mut candidates: Vec<Complex64> = vec![];
     for below in starts {
-        let Some(approximant) = at(below) else { continue };
+        let Some(approximant) = at(below) else {
+            continue;
+        };
         for candidate in candidates_of(&approximant.zero, growth) {
             if candidates
                 .iter()
@@ -562,7 +598,8 @@ fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Vec<Follo
         .collect()
 }
 
-/// The factors on the last step of a slow convergence, of which a step is an eighth of the way, and of a fast one.
+/// The factors on the last step of a slow convergence, of which a step is an eighth of the way, and
+/// of a fast one.
 const SLOW: f64 = 8.0;
 const FAST: f64 = 4.0;
 
@@ -570,8 +607,8 @@ const FAST: f64 = 4.0;
 const MOVES: f64 = 0.05;
 
 impl Approximant {
-    /// The zero to which Newton's iteration leads from a place near to it; nothing where that moves away, or where two zeros are next
-    /// to each other, as they are where no branch point is.
+    /// The zero to which Newton's iteration leads from a place near to it; nothing where that moves
+    /// away, or where two zeros are next to each other, as they are where no branch point is.
     fn zero_near(&self, start: &Complex) -> Option<Zero> {
         const ITERATIONS: usize = 60;
         const APART: f64 = 1e-3;
@@ -599,7 +636,8 @@ impl Approximant {
         }
         let [_, slope, bend] = derivatives(&self.zero, &place);
         let settled = place.distance(start) <= MOVES * size && last < 1e-9 * size;
-        let apart = 2.0 * slope.over(&bend).to_f64().norm() > APART * size || bend.squared_size().is_zero();
+        let apart =
+            2.0 * slope.over(&bend).to_f64().norm() > APART * size || bend.squared_size().is_zero();
         (settled && apart).then(|| Zero {
             exponent: (!self.beside.is_empty()).then(|| {
                 let [value, ..] = derivatives(&self.beside, &place);
@@ -630,7 +668,8 @@ fn derivatives(polynomial: &[BigFloat], place: &Complex) -> [Complex; 3] {
     found
 }
 
-/// Zeros of a polynomial about the circle of convergence, in the upper half plane: where Newton's iteration leads from a lattice.
+/// Zeros of a polynomial about the circle of convergence, in the upper half plane: where Newton's
+/// iteration leads from a lattice.
 fn candidates_of(polynomial: &[BigFloat], growth: &Growth) -> Vec<Complex64> {
     const RADII: usize = 15;
     const ANGLES: usize = 25;
@@ -644,15 +683,22 @@ fn candidates_of(polynomial: &[BigFloat], growth: &Growth) -> Vec<Complex64> {
         .collect();
     let evaluate = |z: Complex64| {
         let zero = Complex64::default();
-        numbers.iter().rev().fold((zero, zero), |(value, slope), number| {
-            (value * z + number, slope * z + value)
-        })
+        numbers
+            .iter()
+            .rev()
+            .fold((zero, zero), |(value, slope), number| {
+                (value * z + number, slope * z + value)
+            })
     };
     let mut found: Vec<Complex64> = vec![];
     for radius in 0..RADII {
-        let radius = growth.radius * ((radius as f64 / (RADII - 1) as f64 * 2.0 - 1.0) * growth.margin).exp();
+        let radius = growth.radius
+            * ((radius as f64 / (RADII - 1) as f64 * 2.0 - 1.0) * growth.margin).exp();
         for angle in 0..ANGLES {
-            let mut z = Complex64::from_polar(radius, angle as f64 / (ANGLES - 1) as f64 * std::f64::consts::PI);
+            let mut z = Complex64::from_polar(
+                radius,
+                angle as f64 / (ANGLES - 1) as f64 * std::f64::consts::PI,
+            );
             if angle == 0 || angle + 1 == ANGLES {
                 z.im = 0.0;
             }
@@ -670,7 +716,11 @@ fn candidates_of(polynomial: &[BigFloat], growth: &Growth) -> Vec<Complex64> {
             if !z.is_finite() || length > 1e-6 * size || !growth.allows(size) {
                 continue;
             }
-            z.im = if z.im.abs() < 1e-7 * size { 0.0 } else { z.im.abs() };
+            z.im = if z.im.abs() < 1e-7 * size {
+                0.0
+            } else {
+                z.im.abs()
+            };
             if found.iter().all(|other| (other - z).norm() > 1e-5 * size) {
                 found.push(z);
             }
@@ -679,22 +729,29 @@ fn candidates_of(polynomial: &[BigFloat], growth: &Growth) -> Vec<Complex64> {
     found
 }
 
-/// Whether every kind of approximant has found one place, the same within their errors, and the power there may be that of a square root,
-/// which all kinds meet; `seen` are the places and errors of those of `f^(-1/2)`, whose power may not be known yet.
+/// Whether every kind of approximant has found one place, the same within their errors, and the
+/// power there may be that of a square root, which all kinds meet; `seen` are the places and errors
+/// of those of `f^(-1/2)`, whose power may not be known yet.
 fn all_agree(found: &[Followed], seen: &[(Complex, f64)]) -> bool {
     let has = |kind: Kind| found.iter().any(|own| own.kind == kind);
     let is_root = |own: &Followed| match (own.kind, own.exponent) {
-        (Kind::Differential, Some((value, error))) => error <= WORST_POWER && (value - 0.5).abs() <= error,
+        (Kind::Differential, Some((value, error))) => {
+            error <= WORST_POWER && (value - 0.5).abs() <= error
+        }
         _ => true,
     };
     let together = |one: &Followed| {
         let near = |place: &Complex, error: f64| one.place.distance(place) <= one.error + error;
-        found.iter().all(|other| near(&other.place, other.error)) && seen.iter().any(|other| near(&other.0, other.1))
+        found.iter().all(|other| near(&other.place, other.error))
+            && seen.iter().any(|other| near(&other.0, other.1))
     };
-    has(Kind::Quadratic) && has(Kind::Differential) && found.iter().all(|own| is_root(own) && together(own))
+    has(Kind::Quadratic)
+        && has(Kind::Differential)
+        && found.iter().all(|own| is_root(own) && together(own))
 }
 
-/// The nearest singularity of those that the kinds of approximants have found, with an error that covers what they differ by.
+/// The nearest singularity of those that the kinds of approximants have found, with an error that
+/// covers what they differ by.
 fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Singularity> {
     /// An exponent with more error is not worth saying.
     const WORST_EXPONENT: f64 = 0.02;
@@ -707,7 +764,8 @@ fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Sin
     /// The factor on the error there.
     const SLOWEST: f64 = 10.0;
     let size_of = |own: &Followed| own.place.to_f64().norm();
-    // By how much the coefficients grow faster than those of the singularity, over what that may be off: as a power of their number.
+    // By how much the coefficients grow faster than those of the singularity, over what that may be
+    // off: as a power of their number.
     let excess = |own: &Followed| {
         let power = own.power_of_function()? + 1.0;
         Some((growth.power(size_of(own))? + power) / (1.25 + 0.25 * power.abs()))
@@ -736,7 +794,11 @@ fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Sin
         .map(|(own, _)| size_of(own) + own.error)
         .fold(f64::INFINITY, f64::min);
     let on_circle = |own: &Followed| size_of(own) - own.error <= nearest * (1.0 + MOVES);
-    let mut found: Vec<Followed> = found.into_iter().map(|(own, _)| own).filter(on_circle).collect();
+    let mut found: Vec<Followed> = found
+        .into_iter()
+        .map(|(own, _)| own)
+        .filter(on_circle)
+        .collect();
     let exponent_by = |found: &[Followed], wanted: Kind| {
         let own = found.iter().filter(|own| own.kind == wanted);
         let best = own.min_by(|a, b| a.error.total_cmp(&b.error))?;
@@ -744,7 +806,8 @@ fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Sin
     };
     let exponent = exponent_by(&found, Kind::OfInverseRoot);
     let power = exponent_by(&found, Kind::Differential);
-    // What is no square root the quadratic approximants do not meet, nor those of omega^2 what is a logarithm of the period.
+    // What is no square root the quadratic approximants do not meet, nor those of omega^2 what is a
+    // logarithm of the period.
     if [exponent, power]
         .into_iter()
         .flatten()
@@ -770,12 +833,17 @@ fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Sin
             return None;
         }
     }
-    // Of few coefficients a singularity of no power that could be told may be one of several, unless all kinds have found that one alone.
-    let few = growth.sizes.last().is_none_or(|(highest, _)| *highest < MANY);
+    // Of few coefficients a singularity of no power that could be told may be one of several,
+    // unless all kinds have found that one alone.
+    let few = growth
+        .sizes
+        .last()
+        .is_none_or(|(highest, _)| *highest < MANY);
     if exponent.is_none() && few && !all_agree(&found, &seen) {
         return None;
     }
-    // Powers of a logarithm, which look like a small power, and whatever shows no power at all are met slowly.
+    // Powers of a logarithm, which look like a small power, and whatever shows no power at all are
+    // met slowly.
     if exponent.is_none_or(|(value, error)| value.abs() > error && value.abs() < SMALL_POWER) {
         error *= SLOWEST;
     }
@@ -785,8 +853,9 @@ fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Sin
         return None;
     }
     let unit = (growth.unit as f64).exp2();
-    let estimate =
-        |value: &BigFloat, error: f64| Estimate::rounded(&value.shifted(growth.unit).to_fraction(), error * unit);
+    let estimate = |value: &BigFloat, error: f64| {
+        Estimate::rounded(&value.shifted(growth.unit).to_fraction(), error * unit)
+    };
     let real = best.place.im.is_zero();
     let angle = best.place.im.angle(&best.place.re);
     Some(Singularity {
@@ -797,16 +866,21 @@ fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Sin
             estimate(&best.place.im, if real { 0.0 } else { error }),
         ],
         // In doubles.
-        exponent: exponent
-            .map(|(value, error)| Estimate::rounded(&BigFloat::of_f64(value, 64).to_fraction(), error.max(1e-12))),
+        exponent: exponent.map(|(value, error)| {
+            Estimate::rounded(&BigFloat::of_f64(value, 64).to_fraction(), error.max(1e-12))
+        }),
     })
 }
 
 impl Singularity {
-    /// Whether it lies on the positive axis, `Greater`, or the negative one, `Less`; `None` for a pair.
+    /// Whether it lies on the positive axis, `Greater`, or the negative one, `Less`; `None` for a
+    /// pair.
     pub fn sign(&self) -> Option<Ordering> {
         let [real, imaginary] = &self.place;
-        imaginary.value.is_zero().then(|| real.value.cmp(&Rational::zero()))
+        imaginary
+            .value
+            .is_zero()
+            .then(|| real.value.cmp(&Rational::zero()))
     }
 }
 
@@ -821,7 +895,8 @@ impl fmt::Display for Estimate {
 const MOST_DECIMALS: usize = 400;
 
 impl Estimate {
-    /// Rounded to the last decimal of which the error leaves anything, which adds to the error; without an error to twenty digits.
+    /// Rounded to the last decimal of which the error leaves anything, which adds to the error;
+    /// without an error to twenty digits.
     pub fn rounded(value: &Rational, error: f64) -> Self {
         let digit = match error > 0.0 {
             true => (error.log10().ceil() as i32).max(-(MOST_DECIMALS as i32)),
@@ -836,7 +911,10 @@ impl Estimate {
             true => error + to_f64(&(value - &rounded)).abs(),
             false => error,
         };
-        Self { value: rounded, error }
+        Self {
+            value: rounded,
+            error,
+        }
     }
 }
 
@@ -872,28 +950,49 @@ mod tests {
         left.iter().zip(right).map(|(a, b)| a + b).collect()
     }
 
-    /// The error is never larger than its estimate and the rounding to it, whatever the singularity and the degree.
+    /// The error is never larger than its estimate and the rounding to it, whatever the singularity
+    /// and the degree.
     #[test]
     fn the_error_is_what_is_said() {
         let (near, far) = (ratio(-7, 5), ratio(9, 4));
         for degree in [16, 21, 27, 36, 50] {
-            for exponent in [ratio(1, 2), ratio(-1, 1), ratio(-1, 2), ratio(1, 3), ratio(-3, 2)] {
-                // A singular part that is more than a power, a regular part, and a second singularity beyond.
-                let singular = times(&power(&near, &exponent, degree), &exponential(&ratio(1, 3), degree));
-                let beyond = times(&power(&far, &ratio(1, 4), degree), &exponential(&ratio(-1, 2), degree));
+            for exponent in [
+                ratio(1, 2),
+                ratio(-1, 1),
+                ratio(-1, 2),
+                ratio(1, 3),
+                ratio(-3, 2),
+            ] {
+                // A singular part that is more than a power, a regular part, and a second
+                // singularity beyond.
+                let singular = times(
+                    &power(&near, &exponent, degree),
+                    &exponential(&ratio(1, 3), degree),
+                );
+                let beyond = times(
+                    &power(&far, &ratio(1, 4), degree),
+                    &exponential(&ratio(-1, 2), degree),
+                );
                 let Some(found) = nearest(&plus(&singular, &beyond)) else {
                     assert!(degree < 30, "{degree} {exponent}");
                     continue;
                 };
                 let error = to_f64(&(&found.radius.value + &near)).abs();
-                assert!(error <= found.radius.error, "{degree} {exponent}: {found:?}");
+                assert!(
+                    error <= found.radius.error,
+                    "{degree} {exponent}: {found:?}"
+                );
                 assert_eq!(found.sign(), Some(Ordering::Less));
-                assert!(degree < 36 || error < 1e-6, "{degree} {exponent}: {found:?}");
+                assert!(
+                    degree < 36 || error < 1e-6,
+                    "{degree} {exponent}: {found:?}"
+                );
             }
         }
     }
 
-    /// `sqrt(1 - 2 s cos(phi)/R + s^2/R^2)` times an exponential: branch points at `R e^(+-i phi)`, with `cos(phi) = 3/5`.
+    /// `sqrt(1 - 2 s cos(phi)/R + s^2/R^2)` times an exponential: branch points at `R e^(+-i phi)`,
+    /// with `cos(phi) = 3/5`.
     #[test]
     fn a_pair_has_its_angle() {
         let (cosine, radius) = (ratio(3, 5), ratio(5, 2));
@@ -916,7 +1015,10 @@ mod tests {
             "{found:?}"
         );
         let angle = to_f64(&found.angle.value);
-        assert!((angle.cos() - 0.6).abs() < 1e-12 && found.sign().is_none(), "{found:?}");
+        assert!(
+            (angle.cos() - 0.6).abs() < 1e-12 && found.sign().is_none(),
+            "{found:?}"
+        );
         assert!(
             to_f64(&(&found.place[0].value - ratio(3, 2))).abs() < 1e-12,
             "{found:?}"
@@ -925,7 +1027,8 @@ mod tests {
         assert_eq!(found.exponent.expect("a power").value, ratio(-1, 4));
     }
 
-    /// Of few coefficients too: pairs of all angles and powers, with a real singularity near them, at their own distance or within it.
+    /// Of few coefficients too: pairs of all angles and powers, with a real singularity near them,
+    /// at their own distance or within it.
     #[test]
     fn few_coefficients_say_what_is_so_or_nothing() {
         for degree in [20, 29] {
@@ -934,12 +1037,15 @@ mod tests {
                 let cosine = ratio(i64::from(cosine), size);
                 for exponent in [ratio(1, 2), ratio(1, 3), ratio(-1, 2), ratio(1, 10)] {
                     for beyond in [ratio(19, 5), ratio(-13, 5), ratio(12, 1)] {
-                        // (1 - 2 s cos(phi)/R + s^2/R^2)^e by n c_n = 2 cos(phi)/R (n - 1 - e) c_(n-1) - (n - 2 - 2 e) c_(n-2)/R^2
+                        // (1 - 2 s cos(phi)/R + s^2/R^2)^e by n c_n = 2 cos(phi)/R (n - 1 - e)
+                        // c_(n-1) - (n - 2 - 2 e) c_(n-2)/R^2
                         let radius = ratio(5, 2);
                         let mut pair = vec![ratio(1, 1)];
                         for n in 1..=degree as i64 {
                             let last = &pair[n as usize - 1];
-                            let step = ratio(2, 1) * &cosine / &radius * (ratio(n - 1, 1) - &exponent) * last;
+                            let step = ratio(2, 1) * &cosine / &radius
+                                * (ratio(n - 1, 1) - &exponent)
+                                * last;
                             let before = match n {
                                 1 => ratio(0, 1),
                                 _ => {

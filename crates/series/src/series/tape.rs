@@ -1,7 +1,8 @@
 //! Taylor coefficients of many quantities at once: a list of recurrences, computed order by order.
 //!
-//! In: operations in an order in which they can be computed, and the coefficients of the variables. Out: those of everything
-//! else, one order beyond what the variables have so far. With `u = u_0 + u_1 s + ...`:
+//! In: operations in an order in which they can be computed, and the coefficients of the variables.
+//! Out: those of everything else, one order beyond what the variables have so far. With
+//! `u = u_0 + u_1 s + ...`:
 //!
 //! ```text
 //! (u v)_n = sum_k u_k v_(n-k)            p = u^a:   n u_0 p_n = sum_(k=1..n) (a k - n + k) u_k p_(n-k)
@@ -10,8 +11,8 @@
 //! y' = u'/v:   n v_0 y_n = n u_n - sum_(0<k<n) k y_k v_(n-k)      log: v = u;  atan: v = 1 + u^2
 //! ```
 //!
-//! An order costs one product sum for each product, quotient and integral: `n` multiplications, or fewer where an operand is a
-//! number or grows like time.
+//! An order costs one product sum for each product, quotient and integral: `n` multiplications, or
+//! fewer where an operand is a number or grows like time.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -31,14 +32,15 @@ pub(super) enum Operation {
     Divide(usize, usize, usize),
     /// `s u'`: the coefficients `n u_n`.
     Slope(usize),
-    /// A power that is no whole number, of what is not zero; its value, which is negative where the base may be.
+    /// A power that is no whole number, of what is not zero; its value, which is negative where the
+    /// base may be.
     Power {
         base: usize,
         exponent: f64,
         first: fn(f64, f64) -> f64,
     },
-    /// `y' = u' g`, with a function of the value of `u` to begin with: the place of `u`, that of its slope, which is zero beyond an
-    /// order, and that of `g`.
+    /// `y' = u' g`, with a function of the value of `u` to begin with: the place of `u`, that of
+    /// its slope, which is zero beyond an order, and that of `g`.
     Integral {
         of: usize,
         slope: usize,
@@ -46,7 +48,8 @@ pub(super) enum Operation {
         rate: usize,
         first: fn(f64) -> f64,
     },
-    /// `y' = u'/v`, times a sign: the place of `u`, those of the slopes of `u` and of `y` itself, and that of `v`.
+    /// `y' = u'/v`, times a sign: the place of `u`, those of the slopes of `u` and of `y` itself,
+    /// and that of `v`.
     Quotient {
         of: usize,
         slope: usize,
@@ -55,7 +58,8 @@ pub(super) enum Operation {
         sign: f64,
         first: fn(f64) -> f64,
     },
-    /// Sine and cosine, or their hyperbolic sisters, in this place and the next: `y' = u' z`, `z' = sign u' y`.
+    /// Sine and cosine, or their hyperbolic sisters, in this place and the next: `y' = u' z`,
+    /// `z' = sign u' y`.
     Waves {
         of: usize,
         slope: usize,
@@ -78,22 +82,34 @@ impl Operation {
     fn operands(&self, place: usize) -> Vec<usize> {
         match self {
             Self::Given => vec![],
-            Self::Sum(terms) => terms.iter().flat_map(|(weight, place)| [*weight, *place]).collect(),
+            Self::Sum(terms) => terms
+                .iter()
+                .flat_map(|(weight, place)| [*weight, *place])
+                .collect(),
             Self::Multiply(a, b, _) | Self::Divide(a, b, _) => vec![*a, *b],
             Self::Slope(a) => vec![*a],
             Self::Power { base, .. } => vec![*base],
-            Self::Integral { of, slope, rate, .. } => vec![*of, *slope, *rate],
+            Self::Integral {
+                of, slope, rate, ..
+            } => vec![*of, *slope, *rate],
             Self::Quotient {
-                of, slope, own, over, ..
+                of,
+                slope,
+                own,
+                over,
+                ..
             } => vec![*of, *slope, *own, *over],
             Self::Waves { of, slope, .. } => vec![*of, *slope],
             Self::SecondWave => place.checked_sub(1).into_iter().collect(),
-            Self::Choose { positive, negative, .. } => positive.iter().chain(negative).copied().collect(),
+            Self::Choose {
+                positive, negative, ..
+            } => positive.iter().chain(negative).copied().collect(),
         }
     }
 }
 
-/// Where an expression has another formula on either side: the sign of a series, and the side that is taken.
+/// Where an expression has another formula on either side: the sign of a series, and the side that
+/// is taken.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
     pub(super) argument: usize,
@@ -150,7 +166,9 @@ impl Tape {
         let constant = |place: usize| degree(place).filter(|degree| *degree == 0);
         let degree = match &operation {
             Operation::Given | Operation::SecondWave | Operation::Choose { .. } => None,
-            Operation::Integral { .. } | Operation::Quotient { .. } | Operation::Waves { .. } => None,
+            Operation::Integral { .. } | Operation::Quotient { .. } | Operation::Waves { .. } => {
+                None
+            }
             Operation::Sum(terms) => terms
                 .iter()
                 .map(|term| degree(term.1))
@@ -226,8 +244,8 @@ impl Tape {
         self.series[place][order] = value;
     }
 
-    /// Sets the numbers of letters anew; `false` where the operations may be others for these numbers, and where one is missing. With
-    /// corners the numbers say which of them are one.
+    /// Sets the numbers of letters anew; `false` where the operations may be others for these
+    /// numbers, and where one is missing. With corners the numbers say which of them are one.
     #[must_use]
     pub fn set_numbers(&mut self, numbers: &BTreeMap<Symbol, f64>) -> bool {
         for index in 0..self.named.len() {
@@ -250,13 +268,20 @@ impl Tape {
         &self.series[place]
     }
 
-    /// Computes the coefficients of this order of everything, where those of the variables and all lower ones are known.
+    /// Computes the coefficients of this order of everything, where those of the variables and all
+    /// lower ones are known.
     pub fn compute(&mut self, order: usize) {
         let numbers: &[usize] = if order == 0 { &self.numbers } else { &[] };
         let inverse = self.inverse[order];
         for &place in numbers.iter().chain(&self.changing) {
             let operation = &self.operations[place];
-            compute_at(operation, place, &mut self.series, &self.corners, (order, inverse));
+            compute_at(
+                operation,
+                place,
+                &mut self.series,
+                &self.corners,
+                (order, inverse),
+            );
         }
     }
 
@@ -297,20 +322,39 @@ fn compute_at(
             (at(*a, n) - known) / at(*b, 0)
         }
         Operation::Slope(a) => n as f64 * at(*a, n),
-        Operation::Power { base, exponent, first } if n == 0 => first(at(*base, 0), *exponent),
+        Operation::Power {
+            base,
+            exponent,
+            first,
+        } if n == 0 => first(at(*base, 0), *exponent),
         // What is zero altogether, as behind a closed corner, has zero for its roots.
-        Operation::Power { base, exponent, .. } if *exponent > 0.0 && row(*base)[..=n].iter().all(|c| *c == 0.0) => 0.0,
+        Operation::Power { base, exponent, .. }
+            if *exponent > 0.0 && row(*base)[..=n].iter().all(|c| *c == 0.0) =>
+        {
+            0.0
+        }
         Operation::Power { base, exponent, .. } => {
             let weight = |k: usize| exponent * k as f64 - (n - k) as f64;
-            let sum: f64 = (1..=n).map(|k| weight(k) * at(*base, k) * at(place, n - k)).sum();
+            let sum: f64 = (1..=n)
+                .map(|k| weight(k) * at(*base, k) * at(place, n - k))
+                .sum();
             sum / (n as f64 * at(*base, 0))
         }
-        Operation::Integral { of, first, .. } | Operation::Quotient { of, first, .. } if n == 0 => first(at(*of, 0)),
+        Operation::Integral { of, first, .. } | Operation::Quotient { of, first, .. } if n == 0 => {
+            first(at(*of, 0))
+        }
         Operation::Integral {
-            slope, degree, rate, ..
+            slope,
+            degree,
+            rate,
+            ..
         } => inverse * products(row(*slope), row(*rate), 1..n.min(*degree) + 1, n),
         Operation::Quotient {
-            slope, own, over, sign, ..
+            slope,
+            own,
+            over,
+            sign,
+            ..
         } => {
             let known = products(row(*own), row(*over), 1..n, n);
             (sign * at(*slope, n) - known) * inverse / at(*over, 0)
@@ -351,8 +395,8 @@ fn compute_at(
 }
 
 impl Tape {
-    /// The series whose signs choose between formulas (`abs`, `sgn`, `H`, `max`, `min`), and on which side of zero they are
-    /// taken to be.
+    /// The series whose signs choose between formulas (`abs`, `sgn`, `H`, `max`, `min`), and on
+    /// which side of zero they are taken to be.
     pub fn corners(&self) -> impl Iterator<Item = (&[f64], f64)> {
         let argument = |corner: &Corner| (self.series(corner.argument), corner.side);
         self.corners.iter().map(argument)
@@ -363,7 +407,8 @@ impl Tape {
         self.corners[corner].side *= -1.0;
     }
 
-    /// Takes the side of every corner on which its series lies, or to which it is going; whether one of them is another now.
+    /// Takes the side of every corner on which its series lies, or to which it is going; whether
+    /// one of them is another now.
     pub fn take_sides(&mut self) -> bool {
         let mut changed = false;
         for index in 0..self.corners.len() {
@@ -381,12 +426,16 @@ impl Tape {
     }
 }
 
-/// `sum_k a_k b_(n-k)` over these orders. Two sums, of even and of odd k: half the waiting of one on the other.
+/// `sum_k a_k b_(n-k)` over these orders. Two sums, of even and of odd k: half the waiting of one
+/// on the other.
 fn products(a: &[f64], b: &[f64], orders: Range<usize>, n: usize) -> f64 {
     if orders.is_empty() {
         return 0.0;
     }
-    let (a, b) = (&a[orders.clone()], &b[n + 1 - orders.end..=n - orders.start]);
+    let (a, b) = (
+        &a[orders.clone()],
+        &b[n + 1 - orders.end..=n - orders.start],
+    );
     let (mut even, mut odd) = (0.0, 0.0);
     let (pairs, backwards) = (a.chunks_exact(2), b.rchunks_exact(2));
     let last = pairs.remainder().iter().zip(backwards.remainder());
@@ -408,7 +457,10 @@ fn products_with(a: &[f64], [b, c]: [&[f64]; 2], orders: Range<usize>, n: usize)
     let a = &a[orders.clone()];
     let [b, c] = [b, c].map(|other| &other[n + 1 - orders.end..=n - orders.start]);
     let (mut even, mut odd) = ([0.0; 2], [0.0; 2]);
-    let (pairs, [of_b, of_c]) = (a.chunks_exact(2), [b, c].map(|other| other.rchunks_exact(2)));
+    let (pairs, [of_b, of_c]) = (
+        a.chunks_exact(2),
+        [b, c].map(|other| other.rchunks_exact(2)),
+    );
     let last = pairs
         .remainder()
         .iter()

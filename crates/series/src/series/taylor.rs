@@ -1,7 +1,8 @@
 //! Exact Taylor expansion of an expression, in one or several variables, about a rational point.
 //!
-//! Reference: A. Griewank and A. Walther, *Evaluating Derivatives*, 2nd ed., SIAM 2008, section 13.2 (propagation of Taylor
-//! coefficients). With `u = u_0 + u_1 s + u_2 s^2 + ...` along the line `x = point + s * (deviation)`:
+//! Reference: A. Griewank and A. Walther, *Evaluating Derivatives*, 2nd ed., SIAM 2008,
+//! section 13.2 (propagation of Taylor coefficients). With `u = u_0 + u_1 s + u_2 s^2 + ...` along the line
+//! `x = point + s * (deviation)`:
 //!
 //! ```text
 //! w = u v        w_k = sum_j u_j v_(k-j)
@@ -11,12 +12,15 @@
 //! w = F(u)       w' = F'(u) u'      for log, asin, acos, atan, asinh, whose derivative is algebraic
 //! ```
 //!
-//! Powers of what vanishes at the point are Laurent series, `u^-n = s^(-m n) (u_m + u_(m+1) s + ...)^-n`, and so are sums and
-//! products of them: `(1 - cos(x))/x`, whose singularity is removable, has the series of the function with its limit put in.
+//! Powers of what vanishes at the point are Laurent series,
+//! `u^-n = s^(-m n) (u_m + u_(m+1) s + ...)^-n`, and so are sums and products of them:
+//! `(1 - cos(x))/x`, whose singularity is removable, has the series of the function with its limit
+//! put in.
 //!
-//! Each function costs `O(degree^2)` products of coefficients. Coefficients are expressions, so `sin(1/2)`, `sqrt(k)` or
-//! `exp(eps)` stay what they are: values that no [`Ring`](crate::exact::Ring) has. What an expansion in another ring starts from is
-//! the image of these coefficients where they are fractions.
+//! Each function costs `O(degree^2)` products of coefficients. Coefficients are expressions, so
+//! `sin(1/2)`, `sqrt(k)` or `exp(eps)` stay what they are: values that no
+//! [`Ring`](crate::exact::Ring) has. What an expansion in another ring starts from is the image of
+//! these coefficients where they are fractions.
 
 use std::cell::Cell;
 
@@ -60,12 +64,13 @@ fn in_words(point: &[(Symbol, Expr)]) -> String {
 
 /// The Taylor expansion of `expression` about `point` up to total degree `degree`.
 ///
-/// Entry `k` of the result is the part that is homogeneous of degree `k` in the deviations from the point, written with the
-/// variables' own names: about `x = 0`, entry 3 of `sin(x)` is `-x^3/6`; about `x = 1`, entry 1 of `x^2` is `2*x`, where `x` now
-/// stands for the deviation `x - 1`.
+/// Entry `k` of the result is the part that is homogeneous of degree `k` in the deviations from the
+/// point, written with the variables' own names: about `x = 0`, entry 3 of `sin(x)` is `-x^3/6`;
+/// about `x = 1`, entry 1 of `x^2` is `2*x`, where `x` now stands for the deviation `x - 1`.
 ///
 /// # Errors
-/// A term that is not analytic at the point, a degree above the limit, or a coefficient that does not exist.
+/// A term that is not analytic at the point, a degree above the limit, or a coefficient that does
+/// not exist.
 ///
 /// ```
 /// # use lindstedt_series as lindstedt;
@@ -75,7 +80,11 @@ fn in_words(point: &[(Symbol, Expr)]) -> String {
 /// assert_eq!(parts[3].to_string(), "-x^3/6");
 /// assert!(parts[4].is_zero());
 /// ```
-pub fn taylor(expression: &Expr, point: &[(Symbol, Rational)], degree: u32) -> Result<Vec<Expr>, TaylorError> {
+pub fn taylor(
+    expression: &Expr,
+    point: &[(Symbol, Rational)],
+    degree: u32,
+) -> Result<Vec<Expr>, TaylorError> {
     if degree > HIGHEST_DEGREE {
         return Err(TaylorError::Degree(degree));
     }
@@ -88,8 +97,13 @@ pub fn taylor(expression: &Expr, point: &[(Symbol, Rational)], degree: u32) -> R
     Ok(parts)
 }
 
-/// The first coefficients, so many of them. Dividing by what vanishes loses the last ones, which more at the start make up for.
-fn known_to(expression: &Expr, point: &[(Symbol, Rational)], count: usize) -> Result<Series, TaylorError> {
+/// The first coefficients, so many of them. Dividing by what vanishes loses the last ones, which
+/// more at the start make up for.
+fn known_to(
+    expression: &Expr,
+    point: &[(Symbol, Rational)],
+    count: usize,
+) -> Result<Series, TaylorError> {
     /// More than the poles of a force have; quotients within quotients lose some at each level.
     const ATTEMPTS: usize = 6;
     let mut length = count.max(2);
@@ -138,10 +152,14 @@ fn pole_of(expression: &Expr, point: &[(Symbol, Rational)]) -> Expr {
         }
         Ok::<(), std::convert::Infallible>(())
     });
-    visited.ok().and(first).unwrap_or_else(|| expression.clone())
+    visited
+        .ok()
+        .and(first)
+        .unwrap_or_else(|| expression.clone())
 }
 
-/// The Maclaurin coefficient of `u^k` (NIST Digital Library of Mathematical Functions 10.2.2, 10.25.2 and 19.5.1).
+/// The Maclaurin coefficient of `u^k` (NIST Digital Library of Mathematical Functions
+/// 10.2.2, 10.25.2 and 19.5.1).
 fn special_coefficient(function: Function, k: usize) -> Expr {
     let fraction = |top: Rational, bottom: Rational| Expr::number(top / bottom);
     let factorial = |n: usize| Rational::from_integer(crate::exact::rational::factorial(n as u32));
@@ -149,12 +167,23 @@ fn special_coefficient(function: Function, k: usize) -> Expr {
     let (half, odd) = (k / 2, k % 2 == 1);
     match function {
         Function::BesselJ0 | Function::BesselI0 if !odd => {
-            let sign = if function == Function::BesselJ0 { -1 } else { 1 };
+            let sign = if function == Function::BesselJ0 {
+                -1
+            } else {
+                1
+            };
             fraction(quarter(sign, half), num_traits::pow(factorial(half), 2))
         }
         Function::BesselJ1 | Function::BesselI1 if odd => {
-            let sign = if function == Function::BesselJ1 { -1 } else { 1 };
-            fraction(quarter(sign, half), factorial(half) * factorial(half + 1) * integer(2))
+            let sign = if function == Function::BesselJ1 {
+                -1
+            } else {
+                1
+            };
+            fraction(
+                quarter(sign, half),
+                factorial(half) * factorial(half + 1) * integer(2),
+            )
         }
         Function::EllipticK => {
             let choose = factorial(2 * k) / num_traits::pow(factorial(k), 2);
@@ -173,7 +202,8 @@ type Series = Vec<Expr>;
 #[derive(Clone)]
 struct Laurent {
     pole: usize,
-    /// How many of the coefficients are right: those behind them are zeros in place of what is not known.
+    /// How many of the coefficients are right: those behind them are zeros in place of what is not
+    /// known.
     known: usize,
     coefficients: Series,
 }
@@ -192,25 +222,48 @@ impl Expansion<'_> {
 
     /// The series of one node from the series of its children.
     fn node(&self, expression: &Expr, children: &[Laurent]) -> Result<Laurent, TaylorError> {
-        let known = children.iter().map(|child| child.known).min().unwrap_or(self.length);
-        let is_constant = |child: &Laurent| child.pole == 0 && child.coefficients[1..].iter().all(Expr::is_zero);
-        let is_power = |expr: &Expr| matches!(expr.node(), Node::Power(..)) && self.depends_on_variables(expr);
+        let known = children
+            .iter()
+            .map(|child| child.known)
+            .min()
+            .unwrap_or(self.length);
+        let is_constant =
+            |child: &Laurent| child.pole == 0 && child.coefficients[1..].iter().all(Expr::is_zero);
+        let is_power =
+            |expr: &Expr| matches!(expr.node(), Node::Power(..)) && self.depends_on_variables(expr);
         // What vanishes so far may be no constant at a greater length.
-        let may_vanish = is_power(expression) && children.first().is_some_and(|base| base.coefficients[0].is_zero());
-        if known == self.length && !may_vanish && children.iter().all(is_constant) && expression.as_symbol().is_none() {
-            let constants: Vec<Expr> = children.iter().map(|child| child.coefficients[0].clone()).collect();
+        let may_vanish = is_power(expression)
+            && children
+                .first()
+                .is_some_and(|base| base.coefficients[0].is_zero());
+        if known == self.length
+            && !may_vanish
+            && children.iter().all(is_constant)
+            && expression.as_symbol().is_none()
+        {
+            let constants: Vec<Expr> = children
+                .iter()
+                .map(|child| child.coefficients[0].clone())
+                .collect();
             // sgn(0) has a value, but no series goes through it.
-            if !self.depends_on_variables(expression) || !matches!(expression.node(), Node::Function(..)) {
-                return Ok(self.regular(self.constant(expression.with_children(&constants)?), known));
+            if !self.depends_on_variables(expression)
+                || !matches!(expression.node(), Node::Function(..))
+            {
+                return Ok(
+                    self.regular(self.constant(expression.with_children(&constants)?), known)
+                );
             }
         }
         match (expression.node(), children) {
             (Node::Sum(_), terms) => return Ok(self.sum(terms)),
             (Node::Product(coefficient, _), factors) => {
-                let start = self.regular(self.constant(Expr::number(coefficient.clone())), self.length);
-                return factors
-                    .iter()
-                    .try_fold(start, |product, factor| self.laurent_product(&product, factor));
+                let start = self.regular(
+                    self.constant(Expr::number(coefficient.clone())),
+                    self.length,
+                );
+                return factors.iter().try_fold(start, |product, factor| {
+                    self.laurent_product(&product, factor)
+                });
             }
             (Node::Power(_, exponent), [base, _]) => {
                 if let Some(exponent) = exponent.as_number() {
@@ -219,7 +272,11 @@ impl Expansion<'_> {
             }
             _ => {}
         }
-        if let Some((term, _)) = expression.children().zip(children).find(|(_, child)| child.pole > 0) {
+        if let Some((term, _)) = expression
+            .children()
+            .zip(children)
+            .find(|(_, child)| child.pole > 0)
+        {
             return Err(self.not_analytic(term));
         }
         let series = |child: &Laurent| child.coefficients.clone();
@@ -229,7 +286,9 @@ impl Expansion<'_> {
             (Node::Power(..), [base, exponents]) => {
                 self.exponential(&self.product(exponents, &self.logarithm(base, expression)?)?)?
             }
-            (Node::Function(function, _), arguments) => self.function(*function, arguments, expression)?,
+            (Node::Function(function, _), arguments) => {
+                self.function(*function, arguments, expression)?
+            }
             _ => self.constant(expression.clone()),
         };
         Ok(self.regular(coefficients, known))
@@ -269,7 +328,10 @@ impl Expansion<'_> {
     /// A pole that is none taken off: leading zeros.
     fn reduced(&self, mut series: Laurent) -> Laurent {
         let known = &series.coefficients[..series.known];
-        let zeros = known.iter().take_while(|coefficient| coefficient.is_zero()).count();
+        let zeros = known
+            .iter()
+            .take_while(|coefficient| coefficient.is_zero())
+            .count();
         let removable = zeros.min(series.pole);
         series.coefficients.drain(..removable);
         series.coefficients.resize(self.length, Expr::zero());
@@ -279,7 +341,12 @@ impl Expansion<'_> {
     }
 
     /// As [`Expansion::power`], of a series without a pole that does not vanish.
-    fn regular_power(&self, base: &Series, exponent: &Rational, term: &Expr) -> Result<Series, TaylorError> {
+    fn regular_power(
+        &self,
+        base: &Series,
+        exponent: &Rational,
+        term: &Expr,
+    ) -> Result<Series, TaylorError> {
         let found = self.power(&self.regular(base.clone(), self.length), exponent, term)?;
         match found.pole {
             0 => Ok(found.coefficients),
@@ -288,7 +355,9 @@ impl Expansion<'_> {
     }
 
     fn depends_on_variables(&self, expression: &Expr) -> bool {
-        self.point.iter().any(|(variable, _)| expression.contains(*variable))
+        self.point
+            .iter()
+            .any(|(variable, _)| expression.contains(*variable))
     }
 
     fn constant(&self, value: Expr) -> Series {
@@ -302,7 +371,8 @@ impl Expansion<'_> {
             None => self.constant(itself.clone()),
             Some((_, centre)) => {
                 let mut series = self.constant(Expr::number(centre.clone()));
-                // One variable alone is put back at the end: until then `sqrt(x^4)` is the square root of a number.
+                // One variable alone is put back at the end: until then `sqrt(x^4)` is the square
+                // root of a number.
                 if let Some(first) = series.get_mut(1) {
                     *first = if self.point.len() == 1 {
                         Expr::one()
@@ -326,7 +396,12 @@ impl Expansion<'_> {
     }
 
     /// `w' = g u'` with the constant of integration given.
-    fn integral(&self, start: Expr, derivative: &Series, of: &Series) -> Result<Series, TaylorError> {
+    fn integral(
+        &self,
+        start: Expr,
+        derivative: &Series,
+        of: &Series,
+    ) -> Result<Series, TaylorError> {
         let mut series = vec![start];
         for k in 1..self.length {
             let sum = convolution(&of[1..=k].to_vec(), &derivative[..k].to_vec(), k - 1, |j| {
@@ -337,10 +412,16 @@ impl Expansion<'_> {
         Ok(series)
     }
 
-    fn power(&self, base: &Laurent, exponent: &Rational, term: &Expr) -> Result<Laurent, TaylorError> {
+    fn power(
+        &self,
+        base: &Laurent,
+        exponent: &Rational,
+        term: &Expr,
+    ) -> Result<Laurent, TaylorError> {
         let known = &base.coefficients[..base.known];
         let Some(lowest) = known.iter().position(|coefficient| !coefficient.is_zero()) else {
-            // Zero to all orders kept: a positive power of it is zero as well, anything else needs more of them.
+            // Zero to all orders kept: a positive power of it is zero as well, anything else needs
+            // more of them.
             return if base.pole == 0 && exponent.is_positive() && exponent.is_integer() {
                 Ok(self.regular(self.constant(Expr::zero()), base.known))
             } else {
@@ -349,7 +430,8 @@ impl Expansion<'_> {
             };
         };
         let shift = (integer(lowest) - integer(base.pole)) * exponent;
-        // (s^m)^(p/q) with q even is |s|^(m p/q): analytic only where m p/q is an even whole number.
+        // (s^m)^(p/q) with q even is |s|^(m p/q): analytic only where m p/q is an even whole
+        // number.
         let even_root = !exponent.denom().is_odd();
         if !shift.is_integer() || (even_root && shift.numer().is_odd()) {
             return Err(self.not_analytic(term));
@@ -358,7 +440,11 @@ impl Expansion<'_> {
             return Err(self.not_analytic(term));
         }
         let size = shift.abs().to_integer().to_usize().unwrap_or(usize::MAX);
-        let (zeros, pole) = if shift.is_negative() { (0, size) } else { (size, 0) };
+        let (zeros, pole) = if shift.is_negative() {
+            (0, size)
+        } else {
+            (size, 0)
+        };
         let mut result = vec![Expr::zero(); self.length.min(zeros)];
         if zeros >= self.length {
             return Ok(self.regular(result, self.length));
@@ -389,7 +475,9 @@ impl Expansion<'_> {
         for k in 1..reduced.len().min(self.length - zeros) {
             let weight = |j: usize| (exponent + Rational::one()) * integer(j) - integer(k);
             let terms: Result<Vec<Expr>, TaylorError> = (1..=k)
-                .filter(|&j| reduced.get(j).is_some_and(|u| !u.is_zero()) && !powers[k - j].is_zero())
+                .filter(|&j| {
+                    reduced.get(j).is_some_and(|u| !u.is_zero()) && !powers[k - j].is_zero()
+                })
                 .map(|j| Ok(&(&Expr::number(weight(j)) * &reduced[j]) * &powers[k - j]))
                 .collect();
             let sum = Expr::sum(terms?).expand()?;
@@ -424,7 +512,11 @@ impl Expansion<'_> {
     }
 
     /// Sine and cosine (`sign = -1`) or their hyperbolic sisters (`sign = 1`).
-    fn sine_and_cosine(&self, of: &Series, hyperbolic: bool) -> Result<(Series, Series), TaylorError> {
+    fn sine_and_cosine(
+        &self,
+        of: &Series,
+        hyperbolic: bool,
+    ) -> Result<(Series, Series), TaylorError> {
         let (sine, cosine, sign) = if hyperbolic {
             (Function::Sinh, Function::Cosh, 1)
         } else {
@@ -434,7 +526,10 @@ impl Expansion<'_> {
         let mut cosines = vec![Expr::function(cosine, vec![of[0].clone()])?];
         for k in 1..self.length {
             let of = of[1..=k].to_vec();
-            let next_sine = Expr::divide(&convolution(&of, &cosines, k - 1, |j| integer(j + 1))?, &number(k))?;
+            let next_sine = Expr::divide(
+                &convolution(&of, &cosines, k - 1, |j| integer(j + 1))?,
+                &number(k),
+            )?;
             let next_cosine = Expr::divide(
                 &convolution(&of, &sines, k - 1, |j| integer(j + 1) * integer_sign(sign))?,
                 &number(k),
@@ -445,7 +540,8 @@ impl Expansion<'_> {
         Ok((sines, cosines))
     }
 
-    /// `w' = (1 + w^2) u'`, the tangent, or `w' = (1 - w^2) u'`, the hyperbolic one: in powers of its own first value.
+    /// `w' = (1 + w^2) u'`, the tangent, or `w' = (1 - w^2) u'`, the hyperbolic one: in powers of
+    /// its own first value.
     fn tangent(&self, start: Expr, of: &Series, sign: i64) -> Result<Series, TaylorError> {
         let mut series = vec![start];
         let mut slopes: Series = Vec::new();
@@ -458,7 +554,12 @@ impl Expansion<'_> {
         Ok(series)
     }
 
-    fn function(&self, function: Function, arguments: &[Series], term: &Expr) -> Result<Series, TaylorError> {
+    fn function(
+        &self,
+        function: Function,
+        arguments: &[Series],
+        term: &Expr,
+    ) -> Result<Series, TaylorError> {
         let of = arguments.first().ok_or_else(|| self.not_analytic(term))?;
         let start = || Expr::function(function, vec![of[0].clone()]);
         match function {
@@ -494,7 +595,9 @@ impl Expansion<'_> {
                     .ok_or_else(|| self.not_analytic(term))?;
                 let positive = sign.is_gt();
                 match function {
-                    Function::Absolute => self.times(of, &Expr::from(if positive { 1 } else { -1 })),
+                    Function::Absolute => {
+                        self.times(of, &Expr::from(if positive { 1 } else { -1 }))
+                    }
                     Function::Sign => Ok(self.constant(Expr::from(if positive { 1 } else { -1 }))),
                     _ => Ok(self.constant(Expr::from(i64::from(positive)))),
                 }
@@ -511,7 +614,11 @@ impl Expansion<'_> {
                     other.clone()
                 })
             }
-            Function::BesselJ0 | Function::BesselJ1 | Function::BesselI0 | Function::BesselI1 | Function::EllipticK
+            Function::BesselJ0
+            | Function::BesselJ1
+            | Function::BesselI0
+            | Function::BesselI1
+            | Function::EllipticK
                 if of[0].is_zero() =>
             {
                 self.composed(of, &|k| special_coefficient(function, k))
@@ -529,7 +636,11 @@ impl Expansion<'_> {
     }
 
     /// `sum_k coefficient(k) u^k` of a series without constant term, by Horner's rule.
-    fn composed(&self, of: &Series, coefficient: &dyn Fn(usize) -> Expr) -> Result<Series, TaylorError> {
+    fn composed(
+        &self,
+        of: &Series,
+        coefficient: &dyn Fn(usize) -> Expr,
+    ) -> Result<Series, TaylorError> {
         let mut sum = self.constant(coefficient(self.length - 1));
         for k in (0..self.length - 1).rev() {
             sum = self.product(&sum, of)?;
@@ -596,9 +707,17 @@ mod tests {
 
     /// The coefficients up to x^degree as text.
     fn coefficients(text: &str, degree: u32) -> Result<Vec<String>, TaylorError> {
-        let parts = taylor(&parse_expression(text).unwrap(), &[("x".into(), Zero::zero())], degree)?;
+        let parts = taylor(
+            &parse_expression(text).unwrap(),
+            &[("x".into(), Zero::zero())],
+            degree,
+        )?;
         assert_eq!(parts.len(), degree as usize + 1);
-        let one = |part: &Expr| part.substitute("x".into(), &Expr::one()).unwrap().to_string();
+        let one = |part: &Expr| {
+            part.substitute("x".into(), &Expr::one())
+                .unwrap()
+                .to_string()
+        };
         Ok(parts.iter().map(one).collect())
     }
 
@@ -627,7 +746,8 @@ mod tests {
             ("sqrt(x^4 + x^5)", ["0", "0", "1", "1/2", "-1/8"]),
         ] {
             for degree in 0..5 {
-                let found = coefficients(text, degree).unwrap_or_else(|error| panic!("{text}: {error}"));
+                let found =
+                    coefficients(text, degree).unwrap_or_else(|error| panic!("{text}: {error}"));
                 assert_eq!(found, expected[..=degree as usize], "{text} to {degree}");
             }
         }

@@ -9,7 +9,8 @@ use crate::symbol::Symbol;
 
 /// How a format writes a harmonic.
 pub struct Notation {
-    /// `cos(3*theta)` from `"cos"`, 3 and the name of the phase; never asked for the zeroth harmonic.
+    /// `cos(3*theta)` from `"cos"`, 3 and the name of the phase; never asked for the zeroth
+    /// harmonic.
     pub wave: fn(&str, usize, Symbol) -> String,
     /// What stands between coefficient and harmonic.
     pub times: &'static str,
@@ -27,17 +28,25 @@ pub fn sum(terms: impl IntoIterator<Item = String>) -> String {
             (false, None) => text.extend([" + ", &term]),
         }
     }
-    if text.is_empty() { "0".to_owned() } else { text }
+    if text.is_empty() {
+        "0".to_owned()
+    } else {
+        text
+    }
 }
 
 /// The terms of a polynomial in the order of `key`.
-pub fn in_order(polynomial: &Polynomial, key: impl Fn(&Monomial) -> i32) -> Vec<(&Monomial, &Rational)> {
+pub fn in_order(
+    polynomial: &Polynomial,
+    key: impl Fn(&Monomial) -> i32,
+) -> Vec<(&Monomial, &Rational)> {
     let mut terms: Vec<_> = polynomial.terms().collect();
     terms.sort_by_key(|(monomial, _)| key(monomial));
     terms
 }
 
-/// The terms of a Fourier series, a minus in front of those that have one; `law` writes a coefficient.
+/// The terms of a Fourier series, a minus in front of those that have one; `law` writes a
+/// coefficient.
 pub fn waves(
     series: &FourierSeries<Polynomials>,
     law: impl Fn(&Polynomial) -> String,
@@ -68,7 +77,8 @@ pub fn waves(
     waves
 }
 
-/// The lines of a motion: `first` before the first term, `next` before the others, each with its sign.
+/// The lines of a motion: `first` before the first term, `next` before the others, each with its
+/// sign.
 pub fn lines(waves: &[String], first: &str, next: &str) -> Vec<String> {
     let line = |(index, wave): (usize, &String)| match (index, wave.strip_prefix('-')) {
         (0, _) => format!("{first}{wave}"),

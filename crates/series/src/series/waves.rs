@@ -1,7 +1,8 @@
 //! Sums of waves at points, and back, over residues: products of series are products of values.
 //!
-//! References: K. R. Rao and P. Yip, *Discrete Cosine Transform*, Academic Press 1990, chapter 4; B. G. Lee, *A new algorithm to
-//! compute the discrete cosine transform*, IEEE Trans. ASSP 32 (1984) 1243-1245, for the halving.
+//! References: K. R. Rao and P. Yip, *Discrete Cosine Transform*, Academic Press 1990, chapter 4;
+//! B. G. Lee, *A new algorithm to compute the discrete cosine transform*, IEEE Trans. ASSP 32
+//! (1984) 1243-1245, for the halving.
 //!
 //! ```text
 //! phi_k = (2k+1) pi/(2M),  k = 0 .. M-1            V_k = sum_i q_i cos(i phi_k)
@@ -11,10 +12,11 @@
 //! 2 sin(phi) sin(m phi) = cos((m-1) phi) - cos((m+1) phi)
 //! ```
 //!
-//! Motions with half-wave symmetry have odd harmonics only and are known by their values on a quarter of the period; the others
-//! need half of it. Cosines alone and sines alone are transformed; a series in which both stand has no use for this file. The way
-//! back is the transposed of the way there, times `2/M`. Cost: `M (leaf + log(M/leaf))` for `M` points, where the sums of `leaf`
-//! waves are formed one by one.
+//! Motions with half-wave symmetry have odd harmonics only and are known by their values on a
+//! quarter of the period; the others need half of it. Cosines alone and sines alone are
+//! transformed; a series in which both stand has no use for this file. The way back is the
+//! transposed of the way there, times `2/M`. Cost: `M (leaf + log(M/leaf))` for `M` points, where
+//! the sums of `leaf` waves are formed one by one.
 
 use pulp::NullaryFnOnce;
 
@@ -58,7 +60,8 @@ impl Grid {
         quarters * self.size()
     }
 
-    /// The order in which the points stand, as `k` of `phi_k`: of each half, the other is the mirror image.
+    /// The order in which the points stand, as `k` of `phi_k`: of each half, the other is the
+    /// mirror image.
     fn points(&self) -> Vec<usize> {
         let mut points: Vec<usize> = (0..self.leaf).collect();
         for _ in 0..self.halvings {
@@ -143,7 +146,10 @@ impl Waves {
         let mut cosines = vec![half; 4 * grid.leaf];
         let step = circle / cosines.len();
         for (place, cosine) in cosines.iter_mut().enumerate() {
-            let twice = residues.sum(powers[place * step], powers[(circle - place * step) % circle]);
+            let twice = residues.sum(
+                powers[place * step],
+                powers[(circle - place * step) % circle],
+            );
             *cosine = residues.product(twice, half);
         }
         let mut rest = &inverses[..];
@@ -182,7 +188,8 @@ impl Waves {
         residues.arithmetic.vectorize(work);
     }
 
-    /// The coefficients of the first `out.len()` waves from the values at all points, which are used up.
+    /// The coefficients of the first `out.len()` waves from the values at all points, which are
+    /// used up.
     #[inline(always)]
     pub fn coefficients<A: Arithmetic>(
         &mut self,
@@ -205,7 +212,8 @@ impl Waves {
     }
 }
 
-/// Two sums of values times cosines, each with the angle of its first cosine and the step to the next, in parts of the circle.
+/// Two sums of values times cosines, each with the angle of its first cosine and the step to the
+/// next, in parts of the circle.
 #[inline(always)]
 fn cosine_sums<A: Arithmetic>(
     residues: &Residues<A>,
@@ -236,7 +244,13 @@ fn cosine_sums<A: Arithmetic>(
     (residues.reduce(of_left_sum), residues.reduce(of_right_sum))
 }
 
-struct Values<'a, A>(&'a mut Waves, &'a Residues<A>, Wave, &'a [Lanes], &'a mut [Lanes]);
+struct Values<'a, A>(
+    &'a mut Waves,
+    &'a Residues<A>,
+    Wave,
+    &'a [Lanes],
+    &'a mut [Lanes],
+);
 
 impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
     type Output = ();
@@ -273,7 +287,11 @@ impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
             (false, Wave::Sine) => {
                 for i in 0..length {
                     let above = given.get(i + 1).copied().unwrap_or_default();
-                    let below = if i > 1 { given[i - 1] } else { Lanes::default() };
+                    let below = if i > 1 {
+                        given[i - 1]
+                    } else {
+                        Lanes::default()
+                    };
                     cosines[i] = residues.difference(above, below);
                 }
             }
@@ -296,15 +314,27 @@ impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
         let used = ((length >> halvings) + 3).min(leaf);
         let (even, odd) = rest[..leaf].split_at_mut(leaf.div_ceil(2));
         let (even, odd) = (&mut even[..used.div_ceil(2)], &mut odd[..used / 2]);
-        for (part, values) in cosines.chunks_exact(leaf).zip(values.chunks_exact_mut(leaf)) {
+        for (part, values) in cosines
+            .chunks_exact(leaf)
+            .zip(values.chunks_exact_mut(leaf))
+        {
             for (place, own) in part[..used].iter().enumerate() {
-                let half = if place % 2 == 0 { &mut *even } else { &mut *odd };
+                let half = if place % 2 == 0 {
+                    &mut *even
+                } else {
+                    &mut *odd
+                };
                 half[place / 2] = *own;
             }
             // At the mirror image of a point the odd ones have the other sign.
             for k in 0..leaf.div_ceil(2) {
                 let step = 2 * k + 1;
-                let (even, odd) = cosine_sums(residues, &waves.cosines, (even, odd), [(0, 2 * step), (step, 2 * step)]);
+                let (even, odd) = cosine_sums(
+                    residues,
+                    &waves.cosines,
+                    (even, odd),
+                    [(0, 2 * step), (step, 2 * step)],
+                );
                 values[leaf - 1 - k] = residues.difference(even, odd);
                 values[k] = residues.sum(even, odd);
             }
@@ -315,7 +345,10 @@ impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
                 let (even, odd) = part.split_at_mut(level / 2);
                 for ((even, odd), over) in even.iter_mut().zip(odd).zip(&waves.halving[halving]) {
                     let value = residues.product(*odd, *over);
-                    (*even, *odd) = (residues.sum(*even, value), residues.difference(*even, value));
+                    (*even, *odd) = (
+                        residues.sum(*even, value),
+                        residues.difference(*even, value),
+                    );
                 }
             }
         }
@@ -326,7 +359,13 @@ impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
     }
 }
 
-struct Coefficients<'a, A>(&'a mut Waves, &'a Residues<A>, Wave, &'a mut [Lanes], &'a mut [Lanes]);
+struct Coefficients<'a, A>(
+    &'a mut Waves,
+    &'a Residues<A>,
+    Wave,
+    &'a mut [Lanes],
+    &'a mut [Lanes],
+);
 
 impl<A: Arithmetic> NullaryFnOnce for Coefficients<'_, A> {
     type Output = ();
@@ -350,7 +389,10 @@ impl<A: Arithmetic> NullaryFnOnce for Coefficients<'_, A> {
                 let (sums, odd) = part.split_at_mut(level / 2);
                 for ((sum, odd), over) in sums.iter_mut().zip(odd).zip(&waves.halving[halving]) {
                     let difference = residues.difference(*sum, *odd);
-                    (*sum, *odd) = (residues.sum(*sum, *odd), residues.product(difference, *over));
+                    (*sum, *odd) = (
+                        residues.sum(*sum, *odd),
+                        residues.product(difference, *over),
+                    );
                 }
             }
         }
@@ -371,7 +413,8 @@ impl<A: Arithmetic> NullaryFnOnce for Coefficients<'_, A> {
             part.fill(Lanes::default());
             for i in (0..used).step_by(2) {
                 let angles = [(i, 2 * i), (i + 1, 2 * i + 2)];
-                let (even, odd) = cosine_sums(residues, &waves.cosines, (sums, differences), angles);
+                let (even, odd) =
+                    cosine_sums(residues, &waves.cosines, (sums, differences), angles);
                 part[i] = even;
                 if let Some(next) = part[..used].get_mut(i + 1) {
                     *next = odd;
@@ -415,7 +458,9 @@ impl<A: Arithmetic> NullaryFnOnce for Coefficients<'_, A> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::residue::{Moduli, Modulus, WIDTH, Work, by_widest, portable::Portable, primes_below};
+    use crate::exact::residue::{
+        Moduli, Modulus, WIDTH, Work, by_widest, portable::Portable, primes_below,
+    };
 
     /// Products of sums of waves by values, against the formulas for products of two waves.
     struct Products {
@@ -455,8 +500,15 @@ mod tests {
                 // Once there and back.
                 let mut own = values(&mut waves, wave, &given);
                 let mut back = vec![Lanes::default(); self.count + 1];
-                let square: Vec<Lanes> = own.iter().map(|value| residues.product(*value, *value)).collect();
-                let second = values(&mut waves, Wave::Cosine, &[Lanes::default(), residues.one()]);
+                let square: Vec<Lanes> = own
+                    .iter()
+                    .map(|value| residues.product(*value, *value))
+                    .collect();
+                let second = values(
+                    &mut waves,
+                    Wave::Cosine,
+                    &[Lanes::default(), residues.one()],
+                );
                 waves.coefficients(residues, wave, &mut own, &mut back);
                 let mut expected = given.clone();
                 if wave == Wave::Sine && !self.half_wave {
@@ -464,7 +516,8 @@ mod tests {
                 }
                 assert_eq!(back[..self.count], expected);
                 assert_eq!(back[self.count], Lanes::default());
-                // The square times the second cosine: u^2 cos = sum of cosines with harmonics i + j + k and their differences.
+                // The square times the second cosine: u^2 cos = sum of cosines with harmonics i +
+                // j + k and their differences.
                 let mut product: Vec<Lanes> = square
                     .iter()
                     .zip(second)
@@ -486,7 +539,8 @@ mod tests {
                         };
                         for (harmonic, term) in [(m + n, upper), (m - n, term)] {
                             for harmonic in [harmonic + cosine, harmonic - cosine] {
-                                let index = harmonic.unsigned_abs() as usize / if self.half_wave { 2 } else { 1 };
+                                let index = harmonic.unsigned_abs() as usize
+                                    / if self.half_wave { 2 } else { 1 };
                                 if let Some(sum) = sums.get_mut(index) {
                                     *sum = residues.sum(*sum, term);
                                 }

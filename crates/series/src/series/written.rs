@@ -1,8 +1,10 @@
-//! A system of equations as Rust: what a [`Tape`] does by looking up each operation, written out once and compiled.
+//! A system of equations as Rust: what a [`Tape`] does by looking up each operation, written out
+//! once and compiled.
 //!
-//! In: equations as text. Out: the source of a function that computes the Taylor series of the states, those of several motions side
-//! by side, where each operation is a sum or a call of a kernel of `impact::taylor::kernels`. The source is kept in the tree, and a
-//! test holds it against what is written here.
+//! In: equations as text. Out: the source of a function that computes the Taylor series of the
+//! states, those of several motions side by side, where each operation is a sum or a call of a
+//! kernel of `impact::taylor::kernels`. The source is kept in the tree, and a test holds it against
+//! what is written here.
 //!
 //! ```text
 //! d(time) = unit (1 + p r + q r^2) dr:    (n+1) y_(n+1) = unit (F_n + p F_(n-1) + q F_(n-2))       y' = F
@@ -10,7 +12,8 @@
 //! (y + g)' = F:                           y_(n+1) = ... - g_(n+1), so g holds states alone whose rates are states
 //! ```
 //!
-//! The slope `u'` is stored one place down, as `n u_n` in the place of `u_(n-1)`: so its product with another series is one like all others.
+//! The slope `u'` is stored one place down, as `n u_n` in the place of `u_(n-1)`: so its product
+//! with another series is one like all others.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,7 +29,8 @@ pub struct Equations {
     pub name: &'static str,
     /// The first line of its documentation.
     pub about: &'static str,
-    /// Line by line `name = expression` for a part, which the lines below it may use, and `state' = rate` or `(state + expression)' = rate`.
+    /// Line by line `name = expression` for a part, which the lines below it may use, and
+    /// `state' = rate` or `(state + expression)' = rate`.
     pub lines: &'static [&'static str],
     /// The states, the series that holds each, and where it begins.
     pub states: &'static [[&'static str; 3]],
@@ -96,16 +100,25 @@ impl<'a> Writer<'a> {
             .states
             .iter()
             .map(|[name, ..]| (*name, grows(name).then_some(1)));
-        let parameters = equations.parameters.iter().map(|[name, _]| (*name, Some(0)));
+        let parameters = equations
+            .parameters
+            .iter()
+            .map(|[name, _]| (*name, Some(0)));
         let variables = states.chain(parameters);
-        let variables: Vec<_> = variables.map(|(name, degree)| (Symbol::from(name), degree)).collect();
+        let variables: Vec<_> = variables
+            .map(|(name, degree)| (Symbol::from(name), degree))
+            .collect();
         let mut recurrences = Recurrences::new(&variables, &BTreeMap::new(), 0);
         let (mut rates, mut names, mut functions) = (Vec::new(), BTreeMap::new(), BTreeMap::new());
         for line in equations.lines {
-            let (left, right) = line.split_once(" = ").ok_or_else(|| format!("no equation: {line}"))?;
+            let (left, right) = line
+                .split_once(" = ")
+                .ok_or_else(|| format!("no equation: {line}"))?;
             let mut add = |text: &str| {
                 let expression = parse_expression(text).map_err(|error| error.to_string())?;
-                let place = recurrences.add(&expression).map_err(|error| error.to_string())?;
+                let place = recurrences
+                    .add(&expression)
+                    .map_err(|error| error.to_string())?;
                 Ok::<_, String>((expression, place))
             };
             let (expression, place) = add(right)?;
@@ -117,12 +130,17 @@ impl<'a> Writer<'a> {
                 recurrences.define(left.into(), place);
                 continue;
             };
-            let sum = left.strip_prefix('(').and_then(|left| left.strip_suffix(')'));
+            let sum = left
+                .strip_prefix('(')
+                .and_then(|left| left.strip_suffix(')'));
             let (state, beside) = match sum.and_then(|sum| sum.split_once(" + ")) {
                 None => (left, None),
                 Some((state, beside)) => (state, Some(add(beside)?.1)),
             };
-            let known = equations.states.iter().position(|[name, ..]| *name == state);
+            let known = equations
+                .states
+                .iter()
+                .position(|[name, ..]| *name == state);
             rates.push(Rate {
                 state: known.ok_or_else(|| format!("no state: {line}"))?,
                 beside,
@@ -140,7 +158,9 @@ impl<'a> Writer<'a> {
             }
         }
         for place in 0..tape.size() {
-            if let (Operation::Quotient { over, .. }, Some(name)) = (tape.operation(place), names.get(&place)) {
+            if let (Operation::Quotient { over, .. }, Some(name)) =
+                (tape.operation(place), names.get(&place))
+            {
                 let over_name = format!("{name}_over");
                 names.entry(*over).or_insert(over_name);
             }
@@ -167,7 +187,8 @@ impl<'a> Writer<'a> {
         place < self.equations.states.len()
     }
 
-    /// Those whose earlier coefficients are read: all but multiples of another series that stand in no product.
+    /// Those whose earlier coefficients are read: all but multiples of another series that stand in
+    /// no product.
     fn find_stored(&mut self) {
         for place in 0..self.tape.size() {
             if self.tape.is_number(place) {
@@ -189,7 +210,9 @@ impl<'a> Writer<'a> {
         let plain = |places: &[usize]| places.iter().map(|place| (*place, None)).collect();
         match self.tape.operation(place) {
             Operation::Sum(terms) => {
-                let terms = terms.iter().filter(|(_, place)| !self.tape.is_number(*place));
+                let terms = terms
+                    .iter()
+                    .filter(|(_, place)| !self.tape.is_number(*place));
                 terms.map(|term| (term.1, self.switch(*term))).collect()
             }
             Operation::Multiply(a, b, _) => plain(&[*a, *b]),
@@ -249,12 +272,15 @@ impl<'a> Writer<'a> {
         let rates: Vec<usize> = self.rates.iter().map(|rate| rate.rate).collect();
         let mut local = BTreeSet::new();
         for place in self.flags.keys().filter(|place| !self.is_state(**place)) {
-            let reads = |reader: &&usize| self.reads(**reader).iter().any(|(read, _)| read == place);
+            let reads =
+                |reader: &&usize| self.reads(**reader).iter().any(|(read, _)| read == place);
             let readers: Vec<usize> = self.flags.keys().filter(reads).copied().collect();
             let is_sum = |place: usize| matches!(self.tape.operation(place), Operation::Sum(_));
             let is_local = match self.tape.operation(*place) {
                 Operation::Sum(_) => rates.contains(place) && readers.is_empty(),
-                Operation::Multiply(..) => !rates.contains(place) && matches!(*readers, [reader] if is_sum(reader)),
+                Operation::Multiply(..) => {
+                    !rates.contains(place) && matches!(*readers, [reader] if is_sum(reader))
+                }
                 _ => false,
             };
             if is_local && !self.ahead.contains(place) {
@@ -270,10 +296,16 @@ impl<'a> Writer<'a> {
         self.number(weight, &mut factors).ok()?;
         let scaled = self.scaled(place).ok()?;
         factors.extend(scaled.factors);
-        let parameter = |name: &str| self.equations.parameters.iter().find(|[own, _]| *own == name);
+        let parameter = |name: &str| {
+            self.equations
+                .parameters
+                .iter()
+                .find(|[own, _]| *own == name)
+        };
         let mut switches = self.equations.switches.iter();
-        let found =
-            switches.find(|[name, _]| parameter(name).is_some_and(|[_, text]| factors.iter().any(|own| own == text)));
+        let found = switches.find(|[name, _]| {
+            parameter(name).is_some_and(|[_, text]| factors.iter().any(|own| own == text))
+        });
         found.map(|[_, flag]| *flag)
     }
 
@@ -298,7 +330,10 @@ impl<'a> Writer<'a> {
             Operation::Sum(terms) if terms.len() == 1 => {
                 Ok(self.number(terms[0].0, factors)? != self.number(terms[0].1, factors)?)
             }
-            _ => Err(format!("a number that is no product: {:?}", self.tape.operation(place))),
+            _ => Err(format!(
+                "a number that is no product: {:?}",
+                self.tape.operation(place)
+            )),
         }
     }
 
@@ -334,7 +369,9 @@ impl<'a> Writer<'a> {
                 Ok(scaled) => format!("{}_slope", self.name(scaled.place)),
                 Err(_) => format!("slope_{place}"),
             },
-            Operation::Sum(terms) if terms.len() == 1 => format!("scaled_{}", self.name(terms[0].1)),
+            Operation::Sum(terms) if terms.len() == 1 => {
+                format!("scaled_{}", self.name(terms[0].1))
+            }
             _ => format!("sum_{place}"),
         }
     }
@@ -365,7 +402,8 @@ impl<'a> Writer<'a> {
         Ok(format!("{sign} {}", factors.join(" * ")))
     }
 
-    /// The place of the slope of another place, if something reads it there: a quotient makes its own.
+    /// The place of the slope of another place, if something reads it there: a quotient makes its
+    /// own.
     fn slope_of(&self, of: usize) -> Option<usize> {
         let is_slope = |place: &&usize| matches!(self.tape.operation(**place), Operation::Slope(own) if *own == of);
         self.flags.keys().find(is_slope).copied()
@@ -374,7 +412,10 @@ impl<'a> Writer<'a> {
     /// The conditions of a place, and others.
     fn conditions(&self, place: usize, more: &[&str]) -> Vec<String> {
         let flag = self.flags.get(&place).copied().flatten();
-        flag.iter().chain(more).map(|&condition| condition.to_owned()).collect()
+        flag.iter()
+            .chain(more)
+            .map(|&condition| condition.to_owned())
+            .collect()
     }
 
     /// What computes the coefficient of this order of a place; none of what is not stored.
@@ -410,8 +451,14 @@ impl<'a> Writer<'a> {
                 let of = self.term(None, *of, order)?;
                 let of = of.strip_prefix("+ ").ok_or("a slope of what is negative")?;
                 match order {
-                    "n + 1" => one(&[], format!("{name}[n] = each(|lane| (n + 1) as f64 * {of});")),
-                    _ => one(&["n > 0"], format!("{name}[n - 1] = each(|lane| n as f64 * {of});")),
+                    "n + 1" => one(
+                        &[],
+                        format!("{name}[n] = each(|lane| (n + 1) as f64 * {of});"),
+                    ),
+                    _ => one(
+                        &["n > 0"],
+                        format!("{name}[n - 1] = each(|lane| n as f64 * {of});"),
+                    ),
                 }
             }
             Operation::Waves {
@@ -428,16 +475,23 @@ impl<'a> Writer<'a> {
                 let waves = format!("[&mut *{sine}, &mut *{cosine}]");
                 if *degree == 1 {
                     let phase = self.scaled(*of)?;
-                    if phase.is_negative || !self.is_state(phase.place) || phase.factors.is_empty() {
+                    if phase.is_negative || !self.is_state(phase.place) || phase.factors.is_empty()
+                    {
                         return Err(format!("`{sine}` is of no multiple of the time"));
                     }
                     let factor = phase.factors.join(" * ");
                     let factor = format!("each(|lane| inputs.unit[lane] * {factor} * INVERSE[n])");
-                    return one(&["n > 0"], format!("waves_of_time({waves}, &stretch, &{factor}, n);"));
+                    return one(
+                        &["n > 0"],
+                        format!("waves_of_time({waves}, &stretch, &{factor}, n);"),
+                    );
                 }
                 one(
                     &["n > 0"],
-                    format!("sine_and_cosine({waves}, {}, n, {sine}_ahead);", self.name(*slope)),
+                    format!(
+                        "sine_and_cosine({waves}, {}, n, {sine}_ahead);",
+                        self.name(*slope)
+                    ),
                 )
             }
             Operation::SecondWave => Ok(vec![]),
@@ -448,12 +502,17 @@ impl<'a> Writer<'a> {
                     other => return Err(format!("no kernel for {other:?}")),
                 };
                 let (value, slope) = (self.term(None, *of, "0")?, self.term(None, *of, "n")?);
-                let (Some(value), Some(slope), true) =
-                    (value.strip_prefix("+ "), slope.strip_prefix("+ "), *sign > 0.0)
-                else {
+                let (Some(value), Some(slope), true) = (
+                    value.strip_prefix("+ "),
+                    slope.strip_prefix("+ "),
+                    *sign > 0.0,
+                ) else {
                     return Err("a quotient of what is negative".to_owned());
                 };
-                let mut both = one(&["n == 0"], format!("{name}[0] = each(|lane| ({value}).{function}());"))?;
+                let mut both = one(
+                    &["n == 0"],
+                    format!("{name}[0] = each(|lane| ({value}).{function}());"),
+                )?;
                 let slope = format!("&each(|lane| n as f64 * {slope})");
                 let series = format!("[&mut *{name}, &mut *{name}_slope]");
                 both.extend(one(
@@ -469,7 +528,10 @@ impl<'a> Writer<'a> {
     /// A sum: the terms that are always there, numbers, and those that need a flag.
     fn sum(&self, place: usize, terms: &[(usize, usize)]) -> Result<Vec<Statement>, String> {
         if self.ahead.contains(&place) {
-            return Err(format!("a sum cannot stand beside a state: `{}`", self.name(place)));
+            return Err(format!(
+                "a sum cannot stand beside a state: `{}`",
+                self.name(place)
+            ));
         }
         let name = self.name(place);
         let own = self.flags.get(&place).copied().flatten();
@@ -478,20 +540,26 @@ impl<'a> Writer<'a> {
             .iter()
             .copied()
             .partition(|(_, place)| self.tape.is_number(*place));
-        let (always, sometimes): (Vec<_>, Vec<_>) = changing.into_iter().partition(|term| flag(term).is_none());
+        let (always, sometimes): (Vec<_>, Vec<_>) =
+            changing.into_iter().partition(|term| flag(term).is_none());
         // It grows in a variable of its own, and is stored once.
         let is_local = self.local.contains(&place);
-        let sum = if is_local { name.clone() } else { format!("{name}_n") };
+        let sum = if is_local {
+            name.clone()
+        } else {
+            format!("{name}_n")
+        };
         let mut statements = vec![];
         let mut text = String::new();
         for (weight, term) in always {
             statements.extend(self.product_of(term)?);
             text = format!("{text} {}", self.term(Some(weight), term, "n")?);
         }
-        let text = text
-            .trim()
-            .trim_start_matches("+ ")
-            .replacen("- ", "-", usize::from(text.starts_with(" -")));
+        let text = text.trim().trim_start_matches("+ ").replacen(
+            "- ",
+            "-",
+            usize::from(text.starts_with(" -")),
+        );
         let text = if text.is_empty() {
             "[0.0; L]".to_owned()
         } else {
@@ -556,7 +624,9 @@ impl<'a> Writer<'a> {
         };
         let of = self.name(place);
         let mut statements = vec![plain(match self.local.contains(&place) {
-            true => format!("let {of}_stretched = stretched_next(&stretch, {of}, &mut {of}_before);"),
+            true => {
+                format!("let {of}_stretched = stretched_next(&stretch, {of}, &mut {of}_before);")
+            }
             false => format!("let {of}_stretched = stretched(&stretch, {of}, n);"),
         })];
         let beside = match rate.beside {
@@ -565,14 +635,19 @@ impl<'a> Writer<'a> {
                 let beside = self.term(None, beside, "n + 1")?;
                 format!(
                     " - {}",
-                    beside.strip_prefix("+ ").ok_or("what is negative beside a state")?
+                    beside
+                        .strip_prefix("+ ")
+                        .ok_or("what is negative beside a state")?
                 )
             }
         };
         match self.slope_of(rate.state) {
             Some(slope) if beside.is_empty() => {
                 let slope = self.name(slope);
-                factors.extend(["inputs.unit[lane]".to_owned(), format!("{of}_stretched[lane]")]);
+                factors.extend([
+                    "inputs.unit[lane]".to_owned(),
+                    format!("{of}_stretched[lane]"),
+                ]);
                 statements.push(plain(format!(
                     "{slope}[n] = each(|lane| {sign}{});",
                     factors.join(" * ")
@@ -595,7 +670,10 @@ impl<'a> Writer<'a> {
 
     /// The places that are computed, in their order.
     fn places(&self) -> impl Iterator<Item = usize> {
-        self.flags.keys().copied().filter(|place| !self.is_state(*place))
+        self.flags
+            .keys()
+            .copied()
+            .filter(|place| !self.is_state(*place))
     }
 
     /// What is there before the first step of the recurrences: where states and parts begin.
@@ -631,10 +709,15 @@ impl<'a> Writer<'a> {
         Ok(before)
     }
 
-    /// A step of the recurrences: states whose rates are states, what is needed of them one order ahead, everything else, the other states.
+    /// A step of the recurrences: states whose rates are states, what is needed of them one order
+    /// ahead, everything else, the other states.
     fn step(&self) -> Result<Vec<Statement>, String> {
         let (mut step, mut last) = (vec![], vec![]);
-        for rate in self.rates.iter().filter(|rate| self.tape.degree(rate.state) != 1) {
+        for rate in self
+            .rates
+            .iter()
+            .filter(|rate| self.tape.degree(rate.state) != 1)
+        {
             let list = match self.is_state(self.scaled(rate.rate)?.place) {
                 true => &mut step,
                 false => &mut last,
@@ -644,7 +727,8 @@ impl<'a> Writer<'a> {
         for place in self.places().filter(|place| self.ahead.contains(place)) {
             step.extend(self.statements(place, "n + 1")?);
         }
-        let is_product = |place: usize| matches!(self.tape.operation(place), Operation::Multiply(..));
+        let is_product =
+            |place: usize| matches!(self.tape.operation(place), Operation::Multiply(..));
         for place in self.places().filter(|place| !self.ahead.contains(place)) {
             // That of a sum stands with the sum.
             if !(is_product(place) && self.local.contains(&place)) {
@@ -657,13 +741,16 @@ impl<'a> Writer<'a> {
 
     /// The names of all series and of what is known ahead of them.
     fn bindings(&self) -> String {
-        let (mut scratch, mut ahead, mut ahead_of_waves, mut rates) = (vec![], vec![], vec![], String::new());
+        let (mut scratch, mut ahead, mut ahead_of_waves, mut rates) =
+            (vec![], vec![], vec![], String::new());
         let is_series = |place: &usize| self.stored.contains(place) && !self.tape.is_number(*place);
         for place in self.places().filter(is_series) {
             let name = self.name(place);
             match self.tape.operation(place) {
                 Operation::Multiply(..) => ahead.push(format!("{name}_ahead")),
-                Operation::Waves { degree, .. } if *degree > 1 => ahead_of_waves.push(format!("{name}_ahead")),
+                Operation::Waves { degree, .. } if *degree > 1 => {
+                    ahead_of_waves.push(format!("{name}_ahead"))
+                }
                 Operation::Quotient { .. } => scratch.push(format!("{name}_slope")),
                 Operation::Sum(_) if self.local.contains(&place) => {
                     rates += &format!("let mut {name}_before = [[0.0; L]; 2];\n");
@@ -675,7 +762,9 @@ impl<'a> Writer<'a> {
             }
         }
         let states = self.equations.states.iter();
-        let states: String = states.map(|[state, field, _]| format!("{field}: {state}, ")).collect();
+        let states: String = states
+            .map(|[state, field, _]| format!("{field}: {state}, "))
+            .collect();
         let lists = [
             ("scratch", scratch),
             ("ahead", ahead),
@@ -718,7 +807,8 @@ let factor: [f64; L] = each(|lane| inputs.unit[lane] * INVERSE[n + 1]);
     }
 }
 
-/// The factor that is known first comes first: its kernel reads the last coefficient of the other one first.
+/// The factor that is known first comes first: its kernel reads the last coefficient of the other
+/// one first.
 fn earlier_first([a, b]: [usize; 2]) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
@@ -734,8 +824,15 @@ fn block(statements: &[Statement], depth: usize) -> String {
         };
         let end = (depth..run[0].conditions.len()).take_while(shared).count() + depth;
         match &run[0].conditions[depth..end] {
-            [] => out += &run.iter().map(|own| own.text.clone() + "\n").collect::<String>(),
-            conditions => out += &format!("if {} {{\n{}}}\n", conditions.join(" && "), block(run, end)),
+            [] => {
+                out += &run
+                    .iter()
+                    .map(|own| own.text.clone() + "\n")
+                    .collect::<String>()
+            }
+            conditions => {
+                out += &format!("if {} {{\n{}}}\n", conditions.join(" && "), block(run, end))
+            }
         }
     }
     out
@@ -748,8 +845,16 @@ mod tests {
     const PENDULUM: Equations = Equations {
         name: "pendulum",
         about: "A pendulum.",
-        lines: &["x' = v", "sine = sin(x)", "cosine = cos(x)", "v' = -sine - damping*v^3"],
-        states: &[["x", "place", "inputs.place"], ["v", "velocity", "inputs.velocity"]],
+        lines: &[
+            "x' = v",
+            "sine = sin(x)",
+            "cosine = cos(x)",
+            "v' = -sine - damping*v^3",
+        ],
+        states: &[
+            ["x", "place", "inputs.place"],
+            ["v", "velocity", "inputs.velocity"],
+        ],
         starts: &[["sine", "inputs.sine"], ["cosine", "inputs.cosine"]],
         parameters: &[["damping", "inputs.damping[lane]"]],
         switches: &[["damping", "terms.damped"]],
@@ -798,8 +903,12 @@ v[n + 1] = each(|lane| factor[lane] * v_rate_stretched[lane]);
             ("(v + sine)' = x", "`sine` cannot stand beside a state"),
             ("(v + (1 + x)^2)' = x", "a sum cannot stand beside a state"),
         ] {
-            let lines: &'static [&'static str] =
-                Box::leak(Box::new(["x' = v", "sine = sin(x)", "cosine = cos(x)", line]));
+            let lines: &'static [&'static str] = Box::leak(Box::new([
+                "x' = v",
+                "sine = sin(x)",
+                "cosine = cos(x)",
+                line,
+            ]));
             let refused = Equations { lines, ..PENDULUM }.to_rust();
             assert!(
                 refused.as_ref().is_err_and(|error| error.contains(reason)),

@@ -1,7 +1,8 @@
-//! The approximate inverse of a derivative: a matrix on the block of low harmonics, whose entries may be anything.
+//! The approximate inverse of a derivative: a matrix on the block of low harmonics, whose entries
+//! may be anything.
 //!
-//! In: integers that a certificate claims to be the entries. Out: images of vectors and columns, and their norms, in balls. What
-//! the inverse is beyond the block is the theorem's affair.
+//! In: integers that a certificate claims to be the entries. Out: images of vectors and columns,
+//! and their norms, in balls. What the inverse is beyond the block is the theorem's affair.
 
 use crate::exact::Integer;
 use crate::exact::ball::{Ball, Balls};
@@ -9,10 +10,12 @@ use crate::exact::bound::Bound;
 
 use super::fourier_series::WORKING;
 
-/// The numbers in which the inverse is held against the derivative: only the size of their difference counts.
+/// The numbers in which the inverse is held against the derivative: only the size of their
+/// difference counts.
 pub(super) const SHORT: Balls = Balls { bits: 80 };
 
-/// The approximate inverse on a number and the harmonics of the block, which has the weight sigma in the norm and the first row.
+/// The approximate inverse on a number and the harmonics of the block, which has the weight sigma
+/// in the norm and the first row.
 pub(super) struct Inverse {
     /// Its entries in full, row by row.
     pub(super) entries: Vec<Vec<Ball>>,
@@ -26,7 +29,8 @@ impl Inverse {
     /// Of entries that are integers times `2^-bits`, and a first row of the weight `2^sigma`.
     pub(super) fn of(entries: &[Vec<Integer>], bits: usize, sigma: i32) -> Self {
         let rows = |balls: Balls| {
-            let row = |row: &Vec<Integer>| row.iter().map(|entry| balls.dyadic(entry, bits)).collect();
+            let row =
+                |row: &Vec<Integer>| row.iter().map(|entry| balls.dyadic(entry, bits)).collect();
             entries.iter().map(row).collect()
         };
         Self {
@@ -39,7 +43,9 @@ impl Inverse {
     /// The norm of a vector on the number and the harmonics of the block.
     pub(super) fn norm(&self, vector: &[Ball], balls: Balls) -> Bound {
         let sizes = vector.iter().enumerate();
-        sizes.map(|(row, ball)| self.weight(row) * balls.magnitude(ball)).sum()
+        sizes
+            .map(|(row, ball)| self.weight(row) * balls.magnitude(ball))
+            .sum()
     }
 
     /// The norm of a column.
@@ -48,7 +54,8 @@ impl Inverse {
         self.norm(&column, WORKING)
     }
 
-    /// How far the inverse makes of a column of the derivative something else than one at this place.
+    /// How far the inverse makes of a column of the derivative something else than one at this
+    /// place.
     pub(super) fn distance_from_unit(&self, column: &[Ball], place: Option<usize>) -> Bound {
         let mut image = image(&self.short, column, SHORT);
         if let Some(place) = place {
@@ -58,7 +65,11 @@ impl Inverse {
     }
 
     fn weight(&self, row: usize) -> Bound {
-        if row == 0 { self.sigma } else { Bound::exactly(1.0) }
+        if row == 0 {
+            self.sigma
+        } else {
+            Bound::exactly(1.0)
+        }
     }
 }
 
@@ -66,7 +77,11 @@ impl Inverse {
 pub(super) fn image(matrix: &[Vec<Ball>], vector: &[Ball], balls: Balls) -> Vec<Ball> {
     let row = |row: &Vec<Ball>| {
         let (mut units, mut radius) = (Integer::default(), Bound::ZERO);
-        for (entry, number) in row.iter().zip(vector).filter(|(_, number)| !number.is_zero()) {
+        for (entry, number) in row
+            .iter()
+            .zip(vector)
+            .filter(|(_, number)| !number.is_zero())
+        {
             units += &entry.middle * &number.middle;
             radius += balls.radius_of_product(entry, number);
         }

@@ -1,8 +1,10 @@
-//! The numbers of a certificate: Newton's iteration from the true motion in doubles, as far as there are digits.
+//! The numbers of a certificate: Newton's iteration from the true motion in doubles, as far as
+//! there are digits.
 //!
-//! In: an oscillator, an answer and values. Out: a certificate that has been checked. Nothing here is trusted by the theorem: the
-//! true motion of the judge gives the first harmonics, the inverse of the derivative in doubles the steps, and each block that
-//! does not prove the motion is followed by a larger one.
+//! In: an oscillator, an answer and values. Out: a certificate that has been checked. Nothing here
+//! is trusted by the theorem: the true motion of the judge gives the first harmonics, the inverse
+//! of the derivative in doubles the steps, and each block that does not prove the motion is
+//! followed by a larger one.
 
 use std::f64::consts::TAU;
 
@@ -33,7 +35,8 @@ pub(super) const BITS: usize = 112;
 /// Those of the inverse, which need not be exact.
 pub(super) const INVERSE_BITS: usize = 56;
 
-/// Why there is no certificate. This is no evidence against a formula, but for a motion that the judge does not find either.
+/// Why there is no certificate. This is no evidence against a formula, but for a motion that the
+/// judge does not find either.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotCertified {
@@ -43,7 +46,9 @@ pub enum NotCertified {
     )]
     NotConservative(String),
     /// A limit cycle of an equation of another form.
-    #[error("`{term}` is not linear in the velocity: certificates of limit cycles are of x'' + g(x)*x' + h(x) = 0")]
+    #[error(
+        "`{term}` is not linear in the velocity: certificates of limit cycles are of x'' + g(x)*x' + h(x) = 0"
+    )]
     NotLienard {
         /// What is not.
         term: String,
@@ -56,13 +61,20 @@ pub enum NotCertified {
     )]
     NotDriven(String),
     /// A drive whose frequency is no fraction.
-    #[error("the driving frequency {0} is no fraction: a certificate needs to know the period exactly")]
+    #[error(
+        "the driving frequency {0} is no fraction: a certificate needs to know the period exactly"
+    )]
     DrivingFrequency(String),
-    /// No steady motion by the formula, or no true one that it leads to, or one without an amplitude of its own.
-    #[error("at these values no steady motion of the formula has an amplitude and a true motion near")]
+    /// No steady motion by the formula, or no true one that it leads to, or one without an
+    /// amplitude of its own.
+    #[error(
+        "at these values no steady motion of the formula has an amplitude and a true motion near"
+    )]
     NoSteadyMotion,
     /// An answer about the way to a limit cycle.
-    #[error("with an amplitude the formula is about the way to the limit cycle, and a certificate is of the cycle")]
+    #[error(
+        "with an amplitude the formula is about the way to the limit cycle, and a certificate is of the cycle"
+    )]
     OffCycle,
     /// A motion with more harmonics than a certificate ever has.
     #[error("not certified: the motion has more than {0} harmonics, more than a proof can hold")]
@@ -73,7 +85,9 @@ pub enum NotCertified {
     )]
     Convention,
     /// A start that is no fraction.
-    #[error("x(0) = {0} is no fraction: a certificate needs to know exactly where the motion starts")]
+    #[error(
+        "x(0) = {0} is no fraction: a certificate needs to know exactly where the motion starts"
+    )]
     Start(String),
     /// A motion that the formula does not give.
     #[error(transparent)]
@@ -94,7 +108,9 @@ pub enum NotCertified {
     #[error(transparent)]
     Expression(#[from] ExprError),
     /// A law that is no expression in the amplitude.
-    #[error("`{0}` is no expression in the amplitude: it has numbers at one amplitude after the other alone")]
+    #[error(
+        "`{0}` is no expression in the amplitude: it has numbers at one amplitude after the other alone"
+    )]
     Law(String),
     /// No block proves it, for a reason that no block has a part in.
     #[error("not certified: {0}")]
@@ -124,20 +140,32 @@ impl NotCertified {
                     "the velocity is a motion on the limit cycle of `{equation}`, of the same frequency: certify that"
                 ));
             }
-            Self::NotLienard { .. } => "`simulate` and the verdict of `derive` follow such motions in numbers",
-            Self::NotDriven(_) => "`response` and the verdict of `derive` follow such motions in numbers",
+            Self::NotLienard { .. } => {
+                "`simulate` and the verdict of `derive` follow such motions in numbers"
+            }
+            Self::NotDriven(_) => {
+                "`response` and the verdict of `derive` follow such motions in numbers"
+            }
             Self::DrivingFrequency(_) => "give it as a decimal or a fraction",
-            Self::NoSteadyMotion => "`derive` with --at lists the steady motions; `response` finds those of a range",
+            Self::NoSteadyMotion => {
+                "`derive` with --at lists the steady motions; `response` finds those of a range"
+            }
             Self::OffCycle => "leave the amplitude out",
             Self::Law(_) => "without a range it is certified at one amplitude",
-            Self::Motion(NoMotion::Unknown | NoMotion::Numbers(_)) | Self::Formula(_) | Self::Sines => {
+            Self::Motion(NoMotion::Unknown | NoMotion::Numbers(_))
+            | Self::Formula(_)
+            | Self::Sines => {
                 "--no-formula proves the motion alone: that it exists, and its frequency"
             }
-            Self::Start(_) => "give the amplitude as a decimal or a fraction, and an equilibrium that is one",
+            Self::Start(_) => {
+                "give the amplitude as a decimal or a fraction, and an equilibrium that is one"
+            }
             Self::NoSeries(_) => {
                 "sums, products, powers, sin, cos, tan, sinh, cosh, tanh, exp, log and atan where they are smooth along the whole motion"
             }
-            Self::TooManyHarmonics(_) => "a smaller parameter: where a motion jumps, it has many harmonics",
+            Self::TooManyHarmonics(_) => {
+                "a smaller parameter: where a motion jumps, it has many harmonics"
+            }
             Self::NotProved { .. } => {
                 "a smaller amplitude or parameter: near the edge of a well, or where a motion turns sharply, it has more harmonics than a proof can hold; or units in which frequency and amplitude are nearer to one"
             }
@@ -159,7 +187,8 @@ pub fn certify(
     certified_motion(oscillator, solution, at, true)
 }
 
-/// A certificate of the motion that a formula is about, without the formula: it may have no value there.
+/// A certificate of the motion that a formula is about, without the formula: it may have no value
+/// there.
 ///
 /// # Errors
 /// [`NotCertified`].
@@ -195,22 +224,30 @@ fn certified_motion(
         true => Some(judged(solution, at, BITS)?),
         false => None,
     };
-    if judged.as_ref().is_some_and(|formula| !formula.sines.is_empty()) {
+    if judged
+        .as_ref()
+        .is_some_and(|formula| !formula.sines.is_empty())
+    {
         return Err(NotCertified::Sines);
     }
     let samples = verify::true_motion(oscillator, solution, at)?;
     let (mu, harmonics) = from_samples(&samples, question.odd);
     let mut certificate = question.certificate(mu, &harmonics, judged);
-    certificate.well_formed_formula().map_err(NotCertified::Formula)?;
+    certificate
+        .well_formed_formula()
+        .map_err(NotCertified::Formula)?;
     // Many harmonics bring it near in few steps; how many a proof needs is another question.
     certificate.highest = (2 * harmonics.len()).clamp(15, HIGHEST_HARMONIC / 2) | 1;
-    refine(&mut certificate, Bound::ZERO).map_err(|reason| not_proved(reason, certificate.block().len()))?;
+    refine(&mut certificate, Bound::ZERO)
+        .map_err(|reason| not_proved(reason, certificate.block().len()))?;
     let mut reason = NotProved::NoContraction(Bound::UNKNOWN);
     for highest in blocks(harmonics.len()) {
         certificate.highest = highest;
         match proved(&mut certificate) {
             Ok(certified) => return Ok((certificate, certified)),
-            Err(error @ NotProved::NoValue(_)) => return Err(not_proved(error, certificate.block().len())),
+            Err(error @ NotProved::NoValue(_)) => {
+                return Err(not_proved(error, certificate.block().len()));
+            }
             Err(error) => reason = error,
         }
     }
@@ -224,7 +261,8 @@ pub(super) fn not_proved(reason: NotProved, harmonics: usize) -> NotCertified {
     }
 }
 
-/// The last harmonics of the blocks that are tried, all odd: about a half of those that a double sees, and more.
+/// The last harmonics of the blocks that are tried, all odd: about a half of those that a double
+/// sees, and more.
 pub(super) fn blocks(seen: usize) -> impl Iterator<Item = usize> {
     let first = (seen / 2).max(5) | 1;
     let sizes = std::iter::successors(Some(first), |size| Some((size * 3 / 2) | 1));
@@ -259,13 +297,20 @@ impl Question {
             .as_number()
             .ok_or_else(|| NotCertified::Start(start.to_string()))?
             .clone();
-        let force = written_out(force.substitute(oscillator.coordinate, &Expr::from(coordinate()))?)?;
-        // In one of two wells beside each other a motion has all harmonics, whatever the symmetry of the force.
+        let force =
+            written_out(force.substitute(oscillator.coordinate, &Expr::from(coordinate()))?)?;
+        // In one of two wells beside each other a motion has all harmonics, whatever the symmetry
+        // of the force.
         let odd = equilibrium.is_zero() && super::force::is_odd(&force, &[coordinate()])?;
         Ok(Self { force, start, odd })
     }
 
-    fn certificate(self, mu: f64, harmonics: &[f64], formula: Option<JudgedFormula>) -> Certificate {
+    fn certificate(
+        self,
+        mu: f64,
+        harmonics: &[f64],
+        formula: Option<JudgedFormula>,
+    ) -> Certificate {
         Certificate {
             force: self.force,
             start: self.start,
@@ -285,29 +330,44 @@ impl Question {
 
 /// A polynomial written out, as it is in a document; anything else as it is.
 pub(super) fn written_out(force: Expr) -> Result<Expr, ExprError> {
-    let written = force
-        .to_polynomial(&mut |_| None)?
-        .filter(|sum| sum.exponent_range(coordinate()).is_none_or(|range| range.0 >= 0));
+    let written = force.to_polynomial(&mut |_| None)?.filter(|sum| {
+        sum.exponent_range(coordinate())
+            .is_none_or(|range| range.0 >= 0)
+    });
     Ok(written.as_ref().map_or(force, Expr::from))
 }
 
 /// The nearest number of units of `2^-bits`, or below it.
 pub(super) fn units(value: f64, bits: usize) -> Integer {
-    from_f64(value).map_or_else(Integer::zero, |value| Balls { bits }.fraction(&value).middle)
+    from_f64(value).map_or_else(Integer::zero, |value| {
+        Balls { bits }.fraction(&value).middle
+    })
 }
 
-/// The formula with its numbers; nothing is claimed yet. Where it is one of cosines alone it has no sines.
-pub(super) fn judged(solution: &Solution, at: &Values, bits: usize) -> Result<JudgedFormula, NotCertified> {
+/// The formula with its numbers; nothing is claimed yet. Where it is one of cosines alone it has no
+/// sines.
+pub(super) fn judged(
+    solution: &Solution,
+    at: &Values,
+    bits: usize,
+) -> Result<JudgedFormula, NotCertified> {
     let motion = solution.motion_at(at)?;
     let displacement = motion.displacement();
     let harmonics = 0..=displacement.highest_harmonic();
-    let sines: Vec<f64> = harmonics.clone().map(|k| displacement.sine(k).mean().0).collect();
-    let length = sines.iter().rposition(|sine| *sine != 0.0).map_or(0, |last| last + 1);
+    let sines: Vec<f64> = harmonics
+        .clone()
+        .map(|k| displacement.sine(k).mean().0)
+        .collect();
+    let length = sines
+        .iter()
+        .rposition(|sine| *sine != 0.0)
+        .map_or(0, |last| last + 1);
     let cosines: Vec<f64> = harmonics.map(|k| displacement.cosine(k).mean().0).collect();
     let mut formula = unclaimed([&cosines, &sines[..length]], bits);
     (formula.law, formula.values) = law::of_frequency(solution, at);
     formula.frequency = units(motion.frequency(), bits);
-    // Where the law, as text, can be evaluated, that is the formula; a double of it may have lost digits.
+    // Where the law, as text, can be evaluated, that is the formula; a double of it may have lost
+    // digits.
     match law::frequency(&formula.law, &formula.values) {
         Some(exact) if is_near(&exact, motion.frequency()) => {
             formula.frequency = Balls { bits }.converted(&exact, WORKING).middle;
@@ -324,7 +384,8 @@ pub(super) fn is_near(exact: &Ball, double: f64) -> bool {
     (WORKING.nearest(exact) - double).abs() <= AGREEMENT * double.abs()
 }
 
-/// A formula of which nothing is claimed yet, its cosine and sine coefficients in units; without a law, and without a frequency.
+/// A formula of which nothing is claimed yet, its cosine and sine coefficients in units; without a
+/// law, and without a frequency.
 pub(super) fn unclaimed([cosines, sines]: [&[f64]; 2], bits: usize) -> JudgedFormula {
     let in_units = |values: &[f64]| values.iter().map(|value| units(*value, bits)).collect();
     let nothing = || [Rational::zero(), Rational::zero()];
@@ -357,8 +418,14 @@ fn from_samples(samples: &[verify::Sample], odd: bool) -> (f64, Vec<f64>) {
     if odd {
         harmonics.iter_mut().step_by(2).for_each(|even| *even = 0.0);
     }
-    let largest = harmonics.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-    while harmonics.len() > 2 && harmonics.last().is_some_and(|last| last.abs() < NOISE * largest) {
+    let largest = harmonics
+        .iter()
+        .fold(0.0_f64, |most, value| most.max(value.abs()));
+    while harmonics.len() > 2
+        && harmonics
+            .last()
+            .is_some_and(|last| last.abs() < NOISE * largest)
+    {
         harmonics.pop();
     }
     ((period / TAU).powi(2), harmonics)
@@ -437,7 +504,8 @@ pub(super) fn inverted(derivative: DMatrix<f64>) -> Result<Vec<Vec<Integer>>, No
     Ok((0..size).map(row).collect())
 }
 
-/// Newton's iteration with one inverse, until it is so near, nothing changes, or it does not get nearer.
+/// Newton's iteration with one inverse, until it is so near, nothing changes, or it does not get
+/// nearer.
 pub(super) fn refine(certificate: &mut Certificate, near: Bound) -> Result<(), NotProved> {
     let bits = certificate.bits;
     certificate.inverse = inverse(certificate)?;
@@ -475,7 +543,10 @@ pub(super) fn iterate<Candidate, Place>(
     let mut before = Bound::UNKNOWN;
     for _ in 0..STEPS {
         let step = correction(candidate)?;
-        let all = step.block.iter().chain(step.beyond.iter().map(|(_, ball)| ball));
+        let all = step
+            .block
+            .iter()
+            .chain(step.beyond.iter().map(|(_, ball)| ball));
         let size: Bound = all.map(|ball| WORKING.magnitude(ball)).sum();
         if size >= before || size == Bound::UNKNOWN {
             break;
@@ -500,13 +571,15 @@ pub(super) fn subtract(coefficients: &mut Vec<Integer>, harmonic: usize, correct
 /// Leaves out the coefficients at the end that have no digits, and those beyond all length.
 pub(super) fn shorten(coefficients: &mut Vec<Integer>) {
     while coefficients.len() > 2
-        && (coefficients.len() > 2 * HIGHEST_HARMONIC || coefficients.last().is_some_and(|last| last.bits() < 4))
+        && (coefficients.len() > 2 * HIGHEST_HARMONIC
+            || coefficients.last().is_some_and(|last| last.bits() < 4))
     {
         coefficients.pop();
     }
 }
 
-/// The weight with which an error of the number that is looked for counts as much as the harmonics that come with it.
+/// The weight with which an error of the number that is looked for counts as much as the harmonics
+/// that come with it.
 pub(super) fn weight(inverse: &[Vec<Integer>]) -> i32 {
     let balls = Balls { bits: INVERSE_BITS };
     let number = |units: &Integer| {

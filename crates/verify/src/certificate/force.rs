@@ -1,8 +1,10 @@
-//! A force evaluated on a whole ball of motions: the expression as it was typed, over cosine series.
+//! A force evaluated on a whole ball of motions: the expression as it was typed, over cosine
+//! series.
 //!
-//! In: `f`, `f'` or `f''` as an expression in the coordinate with exact numbers. Out: a series that contains its values on every
-//! motion of the ball. Sums, products and elementary functions of analytic arguments have one; a corner (`abs`, `sgn`, `max`, a
-//! fractional power through zero) has none, for what is proved rests on the harmonics falling off.
+//! In: `f`, `f'` or `f''` as an expression in the coordinate with exact numbers. Out: a series that
+//! contains its values on every motion of the ball. Sums, products and elementary functions of
+//! analytic arguments have one; a corner (`abs`, `sgn`, `max`, a fractional power through zero) has
+//! none, for what is proved rests on the harmonics falling off.
 
 use num_traits::{One as _, Signed as _, ToPrimitive as _};
 
@@ -32,7 +34,10 @@ pub(super) fn along(force: &Expr, motion: &FourierSeries) -> Result<FourierSerie
 ///
 /// # Errors
 /// [`NoValue`].
-pub(super) fn along_all(force: &Expr, letters: &[(Symbol, &FourierSeries)]) -> Result<FourierSeries, NoValue> {
+pub(super) fn along_all(
+    force: &Expr,
+    letters: &[(Symbol, &FourierSeries)],
+) -> Result<FourierSeries, NoValue> {
     force.fold(|node, parts: &[FourierSeries]| {
         let value = value(node, letters, parts);
         value
@@ -41,7 +46,11 @@ pub(super) fn along_all(force: &Expr, letters: &[(Symbol, &FourierSeries)]) -> R
     })
 }
 
-fn value(node: &Expr, letters: &[(Symbol, &FourierSeries)], parts: &[FourierSeries]) -> Option<FourierSeries> {
+fn value(
+    node: &Expr,
+    letters: &[(Symbol, &FourierSeries)],
+    parts: &[FourierSeries],
+) -> Option<FourierSeries> {
     match node.node() {
         Node::Number(value) => Some(FourierSeries::constant(WORKING.fraction(value))),
         Node::Pi => Some(FourierSeries::constant(WORKING.pi())),
@@ -51,7 +60,10 @@ fn value(node: &Expr, letters: &[(Symbol, &FourierSeries)], parts: &[FourierSeri
             .map(|(_, series)| (*series).clone()),
         Node::Sum(_) => parts.iter().cloned().reduce(|sum, part| sum.sum(&part)),
         Node::Product(coefficient, _) => {
-            let product = parts.iter().cloned().reduce(|product, part| product.product(&part))?;
+            let product = parts
+                .iter()
+                .cloned()
+                .reduce(|product, part| product.product(&part))?;
             Some(times(product, coefficient))
         }
         Node::Power(_, exponent) => power(parts.first()?, exponent.as_number()?),
@@ -75,13 +87,19 @@ fn power(base: &FourierSeries, exponent: &Rational) -> Option<FourierSeries> {
         .abs()
         .to_u32()
         .filter(|times| *times <= HIGHEST_POWER)?;
-    let degree = exponent.denom().to_u32().filter(|degree| *degree <= HIGHEST_POWER)?;
+    let degree = exponent
+        .denom()
+        .to_u32()
+        .filter(|degree| *degree <= HIGHEST_POWER)?;
     match (degree, exponent.is_negative()) {
         (1, false) => Some(base.power(times)),
         (1, true) => Some(base.inverse()?.power(times)),
         (_, true) => Some(base.inverse_root(degree)?.power(times)),
         // u^(1/n) = u (u^(-1/n))^(n - 1).
-        (_, false) => Some(base.product(&base.inverse_root(degree)?.power(degree - 1)).power(times)),
+        (_, false) => Some(
+            base.product(&base.inverse_root(degree)?.power(degree - 1))
+                .power(times),
+        ),
     }
 }
 
@@ -112,7 +130,8 @@ fn function_of(function: Function, argument: &FourierSeries) -> Option<FourierSe
     }
 }
 
-/// Whether `f(-x) = -f(x)`, all these letters with the other sign, as far as can be seen by writing it out.
+/// Whether `f(-x) = -f(x)`, all these letters with the other sign, as far as can be seen by writing
+/// it out.
 ///
 /// # Errors
 /// A point at which the force has no value is written in it.
@@ -134,5 +153,8 @@ fn mirrored(force: &Expr, letters: &[Symbol]) -> Result<Expr, ExprError> {
 }
 
 fn is_nothing(expression: &Expr) -> bool {
-    expression.is_zero() || expression.expand().is_ok_and(|expression| expression.is_zero())
+    expression.is_zero()
+        || expression
+            .expand()
+            .is_ok_and(|expression| expression.is_zero())
 }

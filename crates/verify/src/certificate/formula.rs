@@ -6,9 +6,11 @@
 //! |x(t) - x~(t)| <= max |X - X~| + max |X~'| |omega - omega~| |t|
 //! ```
 //!
-//! In: a certificate and its proof. Out: enclosures, as doubles rounded outwards. The cost is K M products.
+//! In: a certificate and its proof. Out: enclosures, as doubles rounded outwards. The cost is K M
+//! products.
 //!
-//! Source: H. Ehlich, K. Zeller: Schwankung von Polynomen zwischen Gitterpunkten, Mathematische Zeitschrift 86 (1964), 41-44.
+//! Source: H. Ehlich, K. Zeller: Schwankung von Polynomen zwischen Gitterpunkten, Mathematische
+//! Zeitschrift 86 (1964), 41-44.
 
 use std::f64::consts::PI;
 
@@ -41,7 +43,8 @@ impl Enclosure {
         }
     }
 
-    /// The relative error of a number that stands for what is enclosed, `|number/truth - 1|`; all that is known where it is no number.
+    /// The relative error of a number that stands for what is enclosed, `|number/truth - 1|`; all
+    /// that is known where it is no number.
     pub fn relative_error(&self, number: f64) -> Range {
         let Some(exact) = from_f64(number) else {
             return Range {
@@ -51,10 +54,15 @@ impl Enclosure {
         };
         let (truth, radius) = (Bound::of_fraction(&self.middle), self.radius);
         let apart = Bound::of_fraction(&(exact - &self.middle));
-        let (closest, farthest) = ((below(apart) - radius.value()).next_down().max(0.0), apart + radius);
+        let (closest, farthest) = (
+            (below(apart) - radius.value()).next_down().max(0.0),
+            apart + radius,
+        );
         Range {
             lower: (closest / (truth + radius).value()).next_down().max(0.0),
-            upper: farthest.over((below(truth) - radius.value()).next_down()).value(),
+            upper: farthest
+                .over((below(truth) - radius.value()).next_down())
+                .value(),
         }
     }
 }
@@ -76,8 +84,9 @@ pub struct Range {
 /// A formula with numbers, and what is claimed of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedFormula {
-    /// The law as it was derived: `omega = ...` or `omega^2 = ...`, of a driven motion `x = ...` in t, with definitions of letters behind commas.
-    /// A text of another form is words, of which nothing is proved.
+    /// The law as it was derived: `omega = ...` or `omega^2 = ...`, of a driven motion `x = ...` in
+    /// t, with definitions of letters behind commas. A text of another form is words, of which
+    /// nothing is proved.
     pub law: String,
     /// The values of the letters in the law.
     pub values: Values,
@@ -91,7 +100,8 @@ pub struct JudgedFormula {
     pub deviation: [Rational; 2],
     /// What is claimed of `|omega - omega~|`.
     pub frequency_error: [Rational; 2],
-    /// What is claimed of `max |X~'| |omega - omega~|`, by which the two motions part at most in a unit of time.
+    /// What is claimed of `max |X~'| |omega - omega~|`, by which the two motions part at most in a
+    /// unit of time.
     pub drift: [Rational; 2],
     /// Of a driven motion, what is claimed of `|a - a~|`; zeros of others.
     pub amplitude_error: [Rational; 2],
@@ -101,7 +111,8 @@ pub struct JudgedFormula {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Errors {
-    /// `max |X - X~|`, both at the same phase, in the unit of the coordinate; of the nearest of the [copies](Certified::copies) of X.
+    /// `max |X - X~|`, both at the same phase, in the unit of the coordinate; of the nearest of the
+    /// [copies](Certified::copies) of X.
     pub deviation: Range,
     /// `|omega - omega~|`.
     pub frequency: Range,
@@ -114,11 +125,13 @@ pub struct Errors {
 }
 
 impl JudgedFormula {
-    /// Checks sizes, and of a motion without a drive that the frequency is positive and the first harmonic there: with another sign, or
-    /// as that of half the frequency, the same formula would be held against the motion at another phase.
+    /// Checks sizes, and of a motion without a drive that the frequency is positive and the first
+    /// harmonic there: with another sign, or as that of half the frequency, the same formula would
+    /// be held against the motion at another phase.
     pub(super) fn well_formed(&self, is_driven: bool) -> Result<(), &'static str> {
         let small = |integer: &Integer| integer.bits() <= 700;
-        let first = [&self.coefficients, &self.sines].map(|list| list.get(1).is_some_and(|first| !first.is_zero()));
+        let first = [&self.coefficients, &self.sines]
+            .map(|list| list.get(1).is_some_and(|first| !first.is_zero()));
         let lists = [&self.coefficients, &self.sines];
         let demands = [
             (
@@ -126,14 +139,21 @@ impl JudgedFormula {
                 "a formula of more than 800 harmonics",
             ),
             (
-                lists.into_iter().flatten().chain([&self.frequency]).all(small),
+                lists
+                    .into_iter()
+                    .flatten()
+                    .chain([&self.frequency])
+                    .all(small),
                 "a formula with a number of more than 200 digits",
             ),
             (
                 is_driven || self.frequency.is_positive(),
                 "a formula whose frequency is not positive",
             ),
-            (is_driven || first != [false; 2], "a formula without a first harmonic"),
+            (
+                is_driven || first != [false; 2],
+                "a formula without a first harmonic",
+            ),
         ];
         match demands.into_iter().find(|(holds, _)| !holds) {
             Some((_, reason)) => Err(reason),
@@ -148,14 +168,20 @@ impl JudgedFormula {
 
     /// The motion, likewise.
     pub(super) fn motion(&self, bits: usize) -> FourierSeries {
-        let balls = |units: &[Integer]| units.iter().map(|units| WORKING.dyadic(units, bits)).collect();
+        let balls = |units: &[Integer]| {
+            units
+                .iter()
+                .map(|units| WORKING.dyadic(units, bits))
+                .collect()
+        };
         FourierSeries::exactly(balls(&self.coefficients), balls(&self.sines))
     }
 }
 
 /// A motion that is proved, against which a formula is held.
 pub(super) struct Truth<'a> {
-    /// The approximate motion, and what the symmetries of its equation make of it: a formula is one for all of them.
+    /// The approximate motion, and what the symmetries of its equation make of it: a formula is one
+    /// for all of them.
     pub(super) copies: &'a [FourierSeries],
     /// omega.
     pub(super) frequency: &'a Ball,
@@ -169,7 +195,9 @@ pub(super) struct Truth<'a> {
 /// A frequency without a value.
 pub(super) fn certified(certificate: &Certificate, proof: Proof) -> Result<Certified, NotProved> {
     let mut mu = certificate.mu_ball();
-    mu.radius += proof.radius.over(Bound::power_of_two(certificate.sigma).value());
+    mu.radius += proof
+        .radius
+        .over(Bound::power_of_two(certificate.sigma).value());
     let inverse = WORKING.quotient(&WORKING.integer(1), &mu);
     let frequency = inverse.and_then(|inverse| WORKING.root(&inverse, 2));
     let frequency = frequency.ok_or(NotProved::TooLarge(proof.radius))?;
@@ -181,7 +209,9 @@ pub(super) fn certified(certificate: &Certificate, proof: Proof) -> Result<Certi
     };
     let bits = certificate.bits;
     let formula = certificate.formula.as_ref();
-    let errors = |formula: &JudgedFormula| truth.errors(&formula.frequency_ball(bits), &formula.motion(bits));
+    let errors = |formula: &JudgedFormula| {
+        truth.errors(&formula.frequency_ball(bits), &formula.motion(bits))
+    };
     Ok(Certified {
         proof,
         frequency: Enclosure::of(&frequency),
@@ -218,8 +248,13 @@ impl Truth<'_> {
         }
     }
 
-    /// How far a formula of this motion is off, whose frequency is that of the drive; the amplitudes are that of the formula and the true one.
-    pub(super) fn errors_of_driven(&self, own_motion: &FourierSeries, [own, truth]: [&Ball; 2]) -> Errors {
+    /// How far a formula of this motion is off, whose frequency is that of the drive; the
+    /// amplitudes are that of the formula and the true one.
+    pub(super) fn errors_of_driven(
+        &self,
+        own_motion: &FourierSeries,
+        [own, truth]: [&Ball; 2],
+    ) -> Errors {
         let (amplitude, relative) = apart(own, truth);
         Errors {
             deviation: self.deviation(own_motion),
@@ -256,7 +291,9 @@ fn apart(own: &Ball, truth: &Ball) -> (Range, Range) {
     };
     let smallest = WORKING.distance_from_zero(truth);
     let relative = Range {
-        lower: (error.lower / WORKING.magnitude(truth).value()).next_down().max(0.0),
+        lower: (error.lower / WORKING.magnitude(truth).value())
+            .next_down()
+            .max(0.0),
         upper: match smallest > 0.0 {
             true => Bound::exactly(error.upper).over(smallest).value(),
             false => f64::INFINITY,
@@ -270,7 +307,11 @@ fn below_mean(series: &FourierSeries) -> f64 {
     /// More than what the roundings of so short a sum make.
     const ROUNDING: f64 = 1e-12;
     let square = |ball: &Ball| WORKING.distance_from_zero(ball).max(0.0).powi(2);
-    let waves = series.cosines.iter().skip(1).chain(series.sines.iter().skip(1));
+    let waves = series
+        .cosines
+        .iter()
+        .skip(1)
+        .chain(series.sines.iter().skip(1));
     let mean = square(&series.cosine(0)) + 0.5 * waves.map(square).sum::<f64>();
     (mean.sqrt() * (1.0 - ROUNDING) - series.tail.value()).max(0.0)
 }
@@ -301,7 +342,11 @@ fn largest(series: &FourierSeries) -> (f64, Bound) {
     for j in 0..all {
         let (mut units, mut radius) = (Integer::zero(), Bound::ZERO);
         for (wave, coefficients) in short.iter().enumerate() {
-            for (k, coefficient) in coefficients.iter().enumerate().filter(|(_, ball)| !ball.is_zero()) {
+            for (k, coefficient) in coefficients
+                .iter()
+                .enumerate()
+                .filter(|(_, ball)| !ball.is_zero())
+            {
                 let value = &table[j * k % (2 * points)][wave];
                 units += &coefficient.middle * &value.middle;
                 radius += BALLS.radius_of_product(coefficient, value);
@@ -327,7 +372,9 @@ pub(super) fn waves(points: usize, balls: Balls) -> Vec<[Ball; 2]> {
         let all = FourierSeries::exactly(vec![], vec![]).widened(Bound::exactly(1.0));
         (all.clone(), all)
     };
-    let (sine, cosine) = FourierSeries::constant(step).sine_and_cosine().unwrap_or_else(unknown);
+    let (sine, cosine) = FourierSeries::constant(step)
+        .sine_and_cosine()
+        .unwrap_or_else(unknown);
     let turn = [cosine.at_zero(), sine.at_zero()];
     let mut at = [WORKING.integer(1), Ball::zero()];
     let mut table = Vec::with_capacity(2 * points);
@@ -347,11 +394,15 @@ pub(super) fn hold_claims(
     formula: Option<&JudgedFormula>,
     certified: &Certified,
 ) -> Result<(), CheckError> {
-    let above = |what, proved, claim: &Rational| match from_f64(proved).is_some_and(|proved| proved <= *claim) {
+    let above = |what, proved, claim: &Rational| match from_f64(proved)
+        .is_some_and(|proved| proved <= *claim)
+    {
         true => Ok(()),
         false => Err(CheckError::ClaimedLess { what, proved }),
     };
-    let below = |what, proved, claim: &Rational| match from_f64(proved).is_some_and(|proved| *claim <= proved) {
+    let below = |what, proved, claim: &Rational| match from_f64(proved)
+        .is_some_and(|proved| *claim <= proved)
+    {
         true => Ok(()),
         false => Err(CheckError::ClaimedMore { what, proved }),
     };
@@ -359,9 +410,17 @@ pub(super) fn hold_claims(
     if let (Some(claimed), Some(errors)) = (formula, &certified.formula) {
         let amplitude = errors.amplitude.unwrap_or_default();
         let both = [
-            ("the error of the amplitude", amplitude, &claimed.amplitude_error),
+            (
+                "the error of the amplitude",
+                amplitude,
+                &claimed.amplitude_error,
+            ),
             ("the deviation", errors.deviation, &claimed.deviation),
-            ("the error of the frequency", errors.frequency, &claimed.frequency_error),
+            (
+                "the error of the frequency",
+                errors.frequency,
+                &claimed.frequency_error,
+            ),
             ("the drift", errors.drift, &claimed.drift),
         ];
         for (what, proved, claim) in both {

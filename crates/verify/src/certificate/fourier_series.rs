@@ -1,18 +1,20 @@
-//! Functions of an angle, known up to a distance: Fourier series of balls with a tail. An even function has no sines.
+//! Functions of an angle, known up to a distance: Fourier series of balls with a tail. An even
+//! function has no sines.
 //!
 //! ```text
 //! u(theta) = sum_k (a_k cos(k theta) + b_k sin(k theta)) + h(theta),    ||h|| <= tail,    norm: sum_k (|a_k| + |b_k|)
 //! ```
 //!
-//! In: the coefficients of an approximate motion. Out: series that contain whatever the operations make of any functions of
-//! those that came in. The norm bounds the largest value, and that of a product is at most the product of the norms, since
-//! a product of two of the functions is half the sum of two: `cos i cos j = (cos(i+j) + cos(i-j))/2`,
-//! `sin i sin j = (cos(i-j) - cos(i+j))/2`, `sin i cos j = (sin(i+j) + sin(i-j))/2`. A product of n by m coefficients costs n m
-//! products of integers; what is elementary is a Taylor series of an argument that has been halved until it is small, or
-//! Newton's iteration, whose outcome is held against what it has to fulfil.
+//! In: the coefficients of an approximate motion. Out: series that contain whatever the operations
+//! make of any functions of those that came in. The norm bounds the largest value, and that of a
+//! product is at most the product of the norms, since a product of two of the functions is half the
+//! sum of two: `cos i cos j = (cos(i+j) + cos(i-j))/2`, `sin i sin j = (cos(i-j) - cos(i+j))/2`,
+//! `sin i cos j = (sin(i+j) + sin(i-j))/2`. A product of n by m coefficients costs n m products of
+//! integers; what is elementary is a Taylor series of an argument that has been halved until it is
+//! small, or Newton's iteration, whose outcome is held against what it has to fulfil.
 //!
-//! Source: J.-P. Lessard, J. D. Mireles James: Computer assisted Fourier analysis in sequence spaces of varying regularity,
-//! SIAM Journal on Mathematical Analysis 49 (2017), 530-561.
+//! Source: J.-P. Lessard, J. D. Mireles James: Computer assisted Fourier analysis in sequence
+//! spaces of varying regularity, SIAM Journal on Mathematical Analysis 49 (2017), 530-561.
 
 use num_traits::{Signed as _, Zero};
 
@@ -34,7 +36,8 @@ const LONGEST: usize = 1600;
 /// How often an argument is halved; one of a larger norm has no value here.
 const MOST_HALVINGS: u32 = 6;
 
-/// Steps of Newton's iteration, each of which doubles the digits: from those of a double to more than are kept.
+/// Steps of Newton's iteration, each of which doubles the digits: from those of a double to more
+/// than are kept.
 const STEPS: usize = 3;
 
 /// No Taylor series has more terms.
@@ -107,7 +110,8 @@ impl FourierSeries {
         self
     }
 
-    /// The terms of a Taylor series, of an argument of a norm of at most 1/2, after which what is left is negligible; an even number.
+    /// The terms of a Taylor series, of an argument of a norm of at most 1/2, after which what is
+    /// left is negligible; an even number.
     fn terms(&self) -> u32 {
         let negligible = Bound::power_of_two(-self.negligible - 8);
         (2..MOST_TERMS)
@@ -119,7 +123,10 @@ impl FourierSeries {
     /// All that it may be at the angle 0, which is all where it is a constant.
     pub(super) fn at_zero(&self) -> Ball {
         let zero = Ball::zero();
-        let mut value = self.cosines.iter().fold(zero, |sum, ball| WORKING.sum(&sum, ball));
+        let mut value = self
+            .cosines
+            .iter()
+            .fold(zero, |sum, ball| WORKING.sum(&sum, ball));
         value.radius += self.tail;
         value
     }
@@ -146,7 +153,10 @@ impl FourierSeries {
 
     /// The coefficient of a cosine.
     pub(super) fn cosine(&self, harmonic: usize) -> Ball {
-        self.cosines.get(harmonic).cloned().unwrap_or_else(Ball::zero)
+        self.cosines
+            .get(harmonic)
+            .cloned()
+            .unwrap_or_else(Ball::zero)
     }
 
     /// The coefficient of a sine.
@@ -167,11 +177,13 @@ impl FourierSeries {
         let (mut cosines, mut sines) = (vec![], vec![]);
         let mut angle = [WORKING.integer(1), Ball::zero()];
         for k in 0..self.length() {
-            // a cos(u + v) + b sin(u + v) has (a cos v + b sin v) cos u and (b cos v - a sin v) sin u.
+            // a cos(u + v) + b sin(u + v) has (a cos v + b sin v) cos u and (b cos v - a sin v) sin
+            // u.
             let [cosine, sine] = &angle;
             let (a, b) = (self.cosine(k), self.sine(k));
             cosines.push(WORKING.sum(&WORKING.product(&a, cosine), &WORKING.product(&b, sine)));
-            sines.push(WORKING.difference(&WORKING.product(&b, cosine), &WORKING.product(&a, sine)));
+            sines
+                .push(WORKING.difference(&WORKING.product(&b, cosine), &WORKING.product(&a, sine)));
             angle = sum_of_angles(&angle, by);
         }
         Self {
@@ -186,7 +198,9 @@ impl FourierSeries {
     pub(super) fn derivative(&self) -> Self {
         let by_harmonic = |balls: &[Ball], sign: i64| {
             let scaled = balls.iter().enumerate();
-            scaled.map(|(k, ball)| WORKING.scaled(ball, sign * k as i64)).collect()
+            scaled
+                .map(|(k, ball)| WORKING.scaled(ball, sign * k as i64))
+                .collect()
         };
         Self {
             cosines: by_harmonic(&self.sines, 1),
@@ -333,7 +347,8 @@ impl FourierSeries {
         let mut rest = exponent;
         while rest > 0 {
             if rest % 2 == 1 {
-                result = Some(result.map_or_else(|| square.clone(), |result| result.product(&square)));
+                result =
+                    Some(result.map_or_else(|| square.clone(), |result| result.product(&square)));
             }
             rest /= 2;
             if rest > 0 {
@@ -343,10 +358,12 @@ impl FourierSeries {
         result.unwrap_or_else(|| Self::integer(1))
     }
 
-    /// Itself divided by a power of two, so that its norm is at most a half, and how often it was halved.
+    /// Itself divided by a power of two, so that its norm is at most a half, and how often it was
+    /// halved.
     fn halved(&self) -> Option<(Self, u32)> {
         let norm = self.norm();
-        let halvings = (0..=MOST_HALVINGS).find(|&halvings| norm <= Bound::power_of_two(halvings as i32 - 1))?;
+        let halvings = (0..=MOST_HALVINGS)
+            .find(|&halvings| norm <= Bound::power_of_two(halvings as i32 - 1))?;
         Some((self.divided(1 << halvings), halvings))
     }
 
@@ -388,8 +405,9 @@ impl FourierSeries {
 
     /// `self^(-1/degree)`, positive; `None` where that is not proved to exist.
     ///
-    /// With any `g` that is positive at the angle 0 and `w = 1 - u g^n`, `d = ||w|| < 1`: `u^(-1/n) = g (1 - w)^(-1/n)`, which is within
-    /// `||g|| d^2/(1 - d)` of `g (1 + w/n)`, for no coefficient of the binomial series is larger than one.
+    /// With any `g` that is positive at the angle 0 and `w = 1 - u g^n`, `d = ||w|| < 1`:
+    /// `u^(-1/n) = g (1 - w)^(-1/n)`, which is within `||g|| d^2/(1 - d)` of `g (1 + w/n)`, for no
+    /// coefficient of the binomial series is larger than one.
     pub(super) fn inverse_root(&self, degree: u32) -> Option<Self> {
         let mut root = self.sampled(|u| u.powf(-1.0 / f64::from(degree)))?;
         let next = |root: &Self, defect: &Self| root.sum(&root.product(defect).divided(degree));
@@ -423,7 +441,8 @@ impl FourierSeries {
 
     /// The natural logarithm; `None` where that is not proved to exist.
     ///
-    /// With any `g` and `w = u exp(-g)`, `d = ||w - 1|| < 1`: `log u = g + log w`, and `log w` is within `d^2/(2 (1 - d))` of `w - 1`.
+    /// With any `g` and `w = u exp(-g)`, `d = ||w - 1|| < 1`: `log u = g + log w`, and `log w` is
+    /// within `d^2/(2 (1 - d))` of `w - 1`.
     pub(super) fn logarithm(&self) -> Option<Self> {
         let mut guess = self.sampled(f64::ln)?;
         let beyond = |guess: &Self| {
@@ -447,9 +466,10 @@ impl FourierSeries {
 
     /// The arctangent; `None` where that is not proved.
     ///
-    /// With any `g` and `w = (u cos g - sin g)/(cos g + u sin g)`, which is `tan(atan u - g)`, and `||w|| = d < 1/32`: the continuous
-    /// function `atan u - g` stays within `d` of one multiple of pi. That is zero if `|g| < pi/2 - d` at the angle 0, and then it is
-    /// `atan w`, within `d^3` of `w`.
+    /// With any `g` and `w = (u cos g - sin g)/(cos g + u sin g)`, which is `tan(atan u - g)`, and
+    /// `||w|| = d < 1/32`: the continuous function `atan u - g` stays within `d` of one multiple of
+    /// pi. That is zero if `|g| < pi/2 - d` at the angle 0, and then it is `atan w`, within `d^3`
+    /// of `w`.
     pub(super) fn arctangent(&self) -> Option<Self> {
         let mut guess = self.sampled(f64::atan)?;
         let mut rest = self.angle_beyond(&guess)?;
@@ -474,7 +494,8 @@ impl FourierSeries {
         Some(above.product(&cosine.sum(&self.product(&sine)).inverse()?))
     }
 
-    /// A double between zero and its value at the angle 0, of the same sign; `None` where zero may be that value.
+    /// A double between zero and its value at the angle 0, of the same sign; `None` where zero may
+    /// be that value.
     fn start(&self) -> Option<f64> {
         let value = self.at_zero();
         let distance = WORKING.distance_from_zero(&value);
@@ -496,13 +517,19 @@ impl FourierSeries {
         self.trimmed()
     }
 
-    /// About `function` of it, from samples; nothing is proved of it. `None` where a sample has no value.
+    /// About `function` of it, from samples; nothing is proved of it. `None` where a sample has no
+    /// value.
     fn sampled(&self, function: impl Fn(f64) -> f64) -> Option<Self> {
         const DIGITS: f64 = 1e-15;
-        let waves = (0..self.length()).map(|k| [&self.cosine(k), &self.sine(k)].map(|ball| WORKING.nearest(ball)));
+        let waves = (0..self.length())
+            .map(|k| [&self.cosine(k), &self.sine(k)].map(|ball| WORKING.nearest(ball)));
         let count = (8 * self.length()).next_power_of_two().clamp(64, 4096);
         let transform = Transform::new(count);
-        let samples: Vec<f64> = transform.sum_of_waves(waves).into_iter().map(function).collect();
+        let samples: Vec<f64> = transform
+            .sum_of_waves(waves)
+            .into_iter()
+            .map(function)
+            .collect();
         if samples.iter().any(|value| !value.is_finite()) {
             return None;
         }
@@ -515,16 +542,23 @@ impl FourierSeries {
         let all = harmonics.cosines.iter().chain(&harmonics.sines);
         let largest = all.fold(0.0_f64, |most, value| most.max(value.abs()));
         let balls = |mut coefficients: Vec<f64>| {
-            // What an even or odd function has not must be missing: half of all products are those with zero.
+            // What an even or odd function has not must be missing: half of all products are those
+            // with zero.
             for coefficient in &mut coefficients {
                 if coefficient.abs() < DIGITS * largest {
                     *coefficient = 0.0;
                 }
             }
-            let length = coefficients.iter().rposition(|c| *c != 0.0).map_or(0, |last| last + 1);
+            let length = coefficients
+                .iter()
+                .rposition(|c| *c != 0.0)
+                .map_or(0, |last| last + 1);
             coefficients.truncate(length);
             let ball = |value| Some(WORKING.fraction(&from_f64(value)?));
-            coefficients.into_iter().map(ball).collect::<Option<Vec<Ball>>>()
+            coefficients
+                .into_iter()
+                .map(ball)
+                .collect::<Option<Vec<Ball>>>()
         };
         Some(Self {
             cosines: balls(harmonics.cosines)?,
@@ -535,18 +569,25 @@ impl FourierSeries {
     }
 }
 
-/// Adds twice the product of a sum of cosines or sines with another, unrounded, and its radii: that of the harmonics i and j is
-/// that of two others, each of which may be negative.
+/// Adds twice the product of a sum of cosines or sines with another, unrounded, and its radii: that
+/// of the harmonics i and j is that of two others, each of which may be negative.
 fn add_products(
     doubled: &mut [(Integer, Bound)],
     left: &[Ball],
     right: &[Ball],
     waves: impl Fn(usize, usize) -> [(usize, bool); 2],
 ) {
-    let right: Vec<(usize, &Ball)> = right.iter().enumerate().filter(|(_, ball)| !ball.is_zero()).collect();
+    let right: Vec<(usize, &Ball)> = right
+        .iter()
+        .enumerate()
+        .filter(|(_, ball)| !ball.is_zero())
+        .collect();
     for (i, left) in left.iter().enumerate().filter(|(_, left)| !left.is_zero()) {
         for &(j, right) in &right {
-            let (product, radius) = (&left.middle * &right.middle, WORKING.radius_of_product(left, right));
+            let (product, radius) = (
+                &left.middle * &right.middle,
+                WORKING.radius_of_product(left, right),
+            );
             for (harmonic, negative) in waves(i, j) {
                 match negative {
                     true => doubled[harmonic].0 -= &product,
@@ -563,8 +604,8 @@ fn enough(negligible: i32) -> Bound {
     Bound::power_of_two(-negligible / 2)
 }
 
-/// What is left of a Taylor series of sine, cosine or exponential function from a power on, of an argument of a norm of at most 1/2:
-/// `sum_(k >= n) 2^-k/k! <= 2 * 2^-n/n!`.
+/// What is left of a Taylor series of sine, cosine or exponential function from a power on, of an
+/// argument of a norm of at most 1/2: `sum_(k >= n) 2^-k/k! <= 2 * 2^-n/n!`.
 fn remainder(from: u32) -> Bound {
     (1..=from).fold(Bound::exactly(2.0), |bound, k| bound / (2 * k))
 }
@@ -576,29 +617,37 @@ mod tests {
     use super::{Bound, FourierSeries, WORKING};
     use crate::exact::rational::from_f64;
 
-    /// A series of few harmonics with a tail of a hundredth, and one of the functions in it, its cosines and sines: `disturbance`
-    /// times a further harmonic. Half of them are even.
+    /// A series of few harmonics with a tail of a hundredth, and one of the functions in it, its
+    /// cosines and sines: `disturbance` times a further harmonic. Half of them are even.
     fn series() -> impl Strategy<Value = (FourierSeries, [Vec<f64>; 2])> {
         let coefficients = || proptest::collection::vec(-0.25..0.25_f64, 1..4);
         let disturbance = prop_oneof![Just(0.0), Just(0.01), Just(-0.01), -0.01..0.01_f64];
-        (coefficients(), coefficients(), any::<bool>(), disturbance, 0_usize..7).prop_map(
-            |(cosines, mut sines, even, disturbance, harmonic)| {
+        (
+            coefficients(),
+            coefficients(),
+            any::<bool>(),
+            disturbance,
+            0_usize..7,
+        )
+            .prop_map(|(cosines, mut sines, even, disturbance, harmonic)| {
                 sines[0] = 0.0;
                 if even {
                     sines.clear();
                 }
                 let balls = |numbers: &[f64]| {
-                    let balls = numbers.iter().filter_map(|c| Some(WORKING.fraction(&from_f64(*c)?)));
+                    let balls = numbers
+                        .iter()
+                        .filter_map(|c| Some(WORKING.fraction(&from_f64(*c)?)));
                     balls.collect()
                 };
-                let series = FourierSeries::exactly(balls(&cosines), balls(&sines)).widened(Bound::exactly(0.01));
+                let series = FourierSeries::exactly(balls(&cosines), balls(&sines))
+                    .widened(Bound::exactly(0.01));
                 let mut numbers = [cosines, sines];
                 let disturbed = &mut numbers[usize::from(!even && harmonic > 0)];
                 disturbed.resize(disturbed.len().max(harmonic + 1), 0.0);
                 disturbed[harmonic] += disturbance;
                 (series, numbers)
-            },
-        )
+            })
     }
 
     fn value([cosines, sines]: &[Vec<f64>; 2], angle: f64) -> f64 {
@@ -611,9 +660,14 @@ mod tests {
 
     /// Whether a number may be the value of one of the functions at the angle.
     fn holds(series: &FourierSeries, angle: f64, number: f64) -> bool {
-        let numbers =
-            [&series.cosines, &series.sines].map(|balls| balls.iter().map(|ball| WORKING.nearest(ball)).collect());
-        let radii: Bound = series.cosines.iter().chain(&series.sines).map(|ball| ball.radius).sum();
+        let numbers = [&series.cosines, &series.sines]
+            .map(|balls| balls.iter().map(|ball| WORKING.nearest(ball)).collect());
+        let radii: Bound = series
+            .cosines
+            .iter()
+            .chain(&series.sines)
+            .map(|ball| ball.radius)
+            .sum();
         (value(&numbers, angle) - number).abs() <= (series.tail + radii).value() + 1e-12
     }
 
@@ -668,7 +722,11 @@ mod tests {
             assert!(value.is_some_and(|value| value.tail < Bound::exactly(1e-20)));
         }
         // Through zero there is no inverse, no root and no logarithm.
-        assert!(series.inverse().is_none() && series.inverse_root(2).is_none() && series.logarithm().is_none());
+        assert!(
+            series.inverse().is_none()
+                && series.inverse_root(2).is_none()
+                && series.logarithm().is_none()
+        );
         assert!(series.scaled(100).exponential().is_none());
     }
 }

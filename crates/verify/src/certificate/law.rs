@@ -1,8 +1,8 @@
 //! The law of a formula as text, held against its numbers.
 //!
-//! In: `omega^2 = 1 - A^2/8`, with definitions of other letters behind commas, and the values of the letters. Out: the number that it
-//! gives, in balls where every function of it has a value there, else to twelve digits. What is not of this form is words, of which
-//! nothing is said.
+//! In: `omega^2 = 1 - A^2/8`, with definitions of other letters behind commas, and the values of
+//! the letters. Out: the number that it gives, in balls where every function of it has a value
+//! there, else to twelve digits. What is not of this form is words, of which nothing is said.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,8 @@ use crate::values::Values;
 /// A longer text is words.
 const LONGEST: usize = 20_000;
 
-/// With fewer binary digits behind the point the numbers of a formula do not tell one law from another.
+/// With fewer binary digits behind the point the numbers of a formula do not tell one law from
+/// another.
 const FEWEST_BITS: usize = 40;
 
 /// The law of the frequency as text, and the values of the letters in it.
@@ -36,7 +37,9 @@ pub(super) fn of_frequency(solution: &Solution, at: &Values) -> (String, Values)
         _ => None,
     };
     let law = match exactly {
-        Some((name, value)) => with_definitions(solution, name, &value, |definition| definition.meaning.to_string()),
+        Some((name, value)) => with_definitions(solution, name, &value, |definition| {
+            definition.meaning.to_string()
+        }),
         None => solution.formula(),
     };
     let values = values_in(&law, at);
@@ -51,7 +54,8 @@ pub(super) fn with_definitions(
     meaning: impl Fn(&Definition) -> String,
 ) -> String {
     let definitions = solution.definitions_behind(value.symbols()).into_iter();
-    let definitions = definitions.map(|definition| format!(", {} = {}", definition.symbol, meaning(definition)));
+    let definitions =
+        definitions.map(|definition| format!(", {} = {}", definition.symbol, meaning(definition)));
     std::iter::once(format!("{name} = {value}"))
         .chain(definitions)
         .collect()
@@ -59,7 +63,9 @@ pub(super) fn with_definitions(
 
 /// Selects the values whose letters stand in a law; none for words.
 pub(super) fn values_in(law: &str, at: &Values) -> Values {
-    let letters = read(law).map(|(_, value)| value.symbols()).unwrap_or_default();
+    let letters = read(law)
+        .map(|(_, value)| value.symbols())
+        .unwrap_or_default();
     at.split(&letters.into_iter().collect::<Vec<Symbol>>())
         .0
         .into_iter()
@@ -108,10 +114,14 @@ fn equations_of(law: &str) -> Vec<&str> {
     parts
 }
 
-/// The left side of a law, and its right side with the definitions and the values put in; `None` of words.
+/// The left side of a law, and its right side with the definitions and the values put in; `None` of
+/// words.
 pub(super) fn with_values(law: &str, values: &Values) -> Option<(String, Expr)> {
     let (name, value) = read(law)?;
-    let values: BTreeMap<Symbol, Expr> = values.iter().map(|(name, value)| (name, value.clone())).collect();
+    let values: BTreeMap<Symbol, Expr> = values
+        .iter()
+        .map(|(name, value)| (name, value.clone()))
+        .collect();
     Some((name, value.substitute_all(&values).ok()?))
 }
 
@@ -142,7 +152,8 @@ pub(super) fn number(expression: &Expr) -> Option<Ball> {
     Some(ball)
 }
 
-/// Returns whether the law was read and gives the frequency of the formula to its last digits; `false` of words.
+/// Returns whether the law was read and gives the frequency of the formula to its last digits;
+/// `false` of words.
 ///
 /// # Errors
 /// A law that gives another one.
@@ -151,11 +162,14 @@ pub(super) fn hold(formula: &JudgedFormula, bits: usize) -> Result<bool, &'stati
     let Some(exact) = exact else { return Ok(false) };
     match is_rounded(&exact, &formula.frequency_ball(bits), bits) {
         true => Ok(true),
-        false => Err("a formula whose law, at its values, gives another frequency than its numbers"),
+        false => {
+            Err("a formula whose law, at its values, gives another frequency than its numbers")
+        }
     }
 }
 
-/// Returns whether the law of a displacement was read and gives the coefficients of the formula to their last digits; `false` of words.
+/// Returns whether the law of a displacement was read and gives the coefficients of the formula to
+/// their last digits; `false` of words.
 ///
 /// # Errors
 /// A law that gives others.
@@ -169,8 +183,10 @@ pub(super) fn hold_displacement(
         return Ok(false);
     };
     let own = formula.motion(bits);
-    let agree =
-        |k: usize| is_rounded(&exact.cosine(k), &own.cosine(k), bits) && is_rounded(&exact.sine(k), &own.sine(k), bits);
+    let agree = |k: usize| {
+        is_rounded(&exact.cosine(k), &own.cosine(k), bits)
+            && is_rounded(&exact.sine(k), &own.sine(k), bits)
+    };
     match (0..exact.length().max(own.length())).all(agree) {
         true => Ok(true),
         false => Err("a formula whose law, at its values, gives another motion than its numbers"),

@@ -1,20 +1,22 @@
 //! Certificates: a proof beside a closed form.
 //!
-//! In: an oscillator whose energy is conserved, an answer of any method to it, and numbers. Out: a [`Certificate`], from which
-//! anybody can prove in exact arithmetic that there is exactly one motion `x(t) = X(omega t)` with this start near a refined one,
-//! and [`Certified`], what that says of the formula: its frequency is off by no less than this and no more than that, its motion
+//! In: an oscillator whose energy is conserved, an answer of any method to it, and numbers. Out: a
+//! [`Certificate`], from which anybody can prove in exact arithmetic that there is exactly one
+//! motion `x(t) = X(omega t)` with this start near a refined one, and [`Certified`], what that says
+//! of the formula: its frequency is off by no less than this and no more than that, its motion
 //! likewise, and how far the two drift apart in any time.
 //!
 //! ```text
 //! x'' + f(x) = 0,  x(0) = A,  x'(0) = 0:      |x(t) - x~(t)| <= E + max|X~'| |omega - omega~| |t|    for all t
 //! ```
 //!
-//! Limit cycles of `x'' + g(x) x' + h(x) = 0`, which have an amplitude and a phase of their own, and steady motions of such an equation with a
-//! drive have a [`DampedCertificate`] and a theorem in `damped/`.
+//! Limit cycles of `x'' + g(x) x' + h(x) = 0`, which have an amplitude and a phase of their own,
+//! and steady motions of such an equation with a drive have a [`DampedCertificate`] and a theorem
+//! in `damped/`.
 //!
-//! How the refined motion was found is of no importance (`candidate.rs`: Newton's iteration): what is proved rests on
-//! `theorem.rs` and what it is computed with, `force.rs`, `fourier_series.rs` and balls. A certificate that fails says nothing
-//! about the formula.
+//! How the refined motion was found is of no importance (`candidate.rs`: Newton's iteration): what
+//! is proved rests on `theorem.rs` and what it is computed with, `force.rs`, `fourier_series.rs`
+//! and balls. A certificate that fails says nothing about the formula.
 
 mod approximate_inverse;
 mod candidate;
@@ -31,7 +33,9 @@ mod validity;
 use num_traits::{Signed as _, Zero as _};
 
 pub use candidate::{NotCertified, certify, certify_motion};
-pub use damped::{DampedCertificate, Drive, certify_cycle, certify_cycle_motion, certify_driven, check_damped};
+pub use damped::{
+    DampedCertificate, Drive, certify_cycle, certify_cycle_motion, certify_driven, check_damped,
+};
 pub use formula::{Enclosure, Errors, JudgedFormula, Range};
 pub use impact::{ImpactEnclosure, NotEnclosed, enclose_impact};
 pub use radii_polynomial::{NotProved, Proof};
@@ -76,8 +80,8 @@ pub struct Certificate {
     pub highest: usize,
     /// The entries of the inverse are integers times `2^-inverse_bits`.
     pub inverse_bits: usize,
-    /// About the inverse of the derivative on `mu` and the harmonics of the block, row by row; the first row is that of `mu`, the
-    /// first column that of the condition `x(0) = A`.
+    /// About the inverse of the derivative on `mu` and the harmonics of the block, row by row; the
+    /// first row is that of `mu`, the first column that of the condition `x(0) = A`.
     pub inverse: Vec<Vec<Integer>>,
     /// The weight of `mu` in the norm is `2^sigma`.
     pub sigma: i32,
@@ -95,15 +99,18 @@ pub struct Certified {
     pub proof: Proof,
     /// `omega`.
     pub frequency: Enclosure,
-    /// Of a limit cycle its characteristic exponent, by whose exponential neighbouring motions approach it, where it is negative, or leave
-    /// it; `None` of a motion whose energy is conserved.
+    /// Of a limit cycle its characteristic exponent, by whose exponential neighbouring motions
+    /// approach it, where it is negative, or leave it; `None` of a motion whose energy is
+    /// conserved.
     pub exponent: Option<Enclosure>,
     /// Of a driven motion the amplitude of its own harmonic.
     pub amplitude: Option<Enclosure>,
-    /// The number of motions that the symmetries of the equation make of the proved one, itself among them: with a drive that of another whole number of its
-    /// periods later, of an equation that is its mirror image the mirror image. A formula is one for all of them alike.
+    /// The number of motions that the symmetries of the equation make of the proved one, itself
+    /// among them: with a drive that of another whole number of its periods later, of an equation
+    /// that is its mirror image the mirror image. A formula is one for all of them alike.
     pub copies: usize,
-    /// Set if the law of the formula was read as text and gives the numbers that are judged: the frequency, of a driven motion all.
+    /// Set if the law of the formula was read as text and gives the numbers that are judged: the
+    /// frequency, of a driven motion all.
     pub law_is_held: bool,
     /// Of the formula, where one is judged.
     pub formula: Option<Errors>,
@@ -196,7 +203,10 @@ impl Certificate {
 
     /// The approximate motion.
     fn motion(&self) -> FourierSeries {
-        let balls = self.coefficients.iter().map(|units| WORKING.dyadic(units, self.bits));
+        let balls = self
+            .coefficients
+            .iter()
+            .map(|units| WORKING.dyadic(units, self.bits));
         FourierSeries::exactly(balls.collect(), vec![]).of_digits(self.bits)
     }
 
@@ -215,7 +225,8 @@ impl Certificate {
 
     /// Whether the force is odd and the motion has odd harmonics alone.
     fn is_odd(&self) -> Result<bool, ExprError> {
-        Ok(force::is_odd(&self.force, &[coordinate()])? && self.coefficients.iter().step_by(2).all(|c| c.is_zero()))
+        Ok(force::is_odd(&self.force, &[coordinate()])?
+            && self.coefficients.iter().step_by(2).all(|c| c.is_zero()))
     }
 
     /// What does not fit together.
@@ -240,12 +251,15 @@ impl Certificate {
     /// # Errors
     /// The demand that does not hold.
     fn well_formed_formula(&self) -> Result<(), &'static str> {
-        let Some(formula) = &self.formula else { return Ok(()) };
+        let Some(formula) = &self.formula else {
+            return Ok(());
+        };
         formula.well_formed(false)?;
         if formula.sines.iter().any(|sine| !sine.is_zero()) {
             return Err("a formula with sines, of a motion that begins at rest");
         }
-        // Half a period later the motion begins at its other turning point: the formula is of the same start.
+        // Half a period later the motion begins at its other turning point: the formula is of the
+        // same start.
         let start = formula.motion(self.bits).at_zero();
         let apart = WORKING.difference(&start, &WORKING.fraction(&self.start));
         let size = formula.motion(self.bits).norm() * Bound::power_of_two(-ROUNDING_OF_START);
@@ -256,24 +270,33 @@ impl Certificate {
         law::hold(formula, self.bits).map(|_| ())
     }
 
-    /// Checks that the amplitude among the values of the law is that of the motion, about a place of rest.
+    /// Checks that the amplitude among the values of the law is that of the motion, about a place
+    /// of rest.
     fn amplitude_of_law(&self, formula: &JudgedFormula) -> Result<(), &'static str> {
         let letter = AmplitudeConvention::Initial.symbol();
         let amplitude = formula.values.iter().find(|(name, _)| *name == letter);
-        let Some((_, amplitude)) = amplitude else { return Ok(()) };
+        let Some((_, amplitude)) = amplitude else {
+            return Ok(());
+        };
         let belongs = amplitude.as_number().is_some_and(|amplitude| {
             let place = &self.start - amplitude;
             // An equilibrium that is no fraction is known to seventeen digits.
-            let near = amplitude.abs() / Rational::from_integer(Integer::from(1) << ROUNDING_OF_EQUILIBRIUM);
+            let near = amplitude.abs()
+                / Rational::from_integer(Integer::from(1) << ROUNDING_OF_EQUILIBRIUM);
             let force = |place: Rational| {
-                let value = self.force.substitute(coordinate(), &Expr::number(place)).ok();
+                let value = self
+                    .force
+                    .substitute(coordinate(), &Expr::number(place))
+                    .ok();
                 value.and_then(|value| law::number(&value))
             };
             let is_zero = |ball: &Ball| WORKING.distance_from_zero(ball) <= 0.0;
             match [&place - &near, place.clone(), &place + &near].map(force) {
                 [_, Some(middle), _] if is_zero(&middle) => true,
                 [Some(left), _, Some(right)] => {
-                    !is_zero(&left) && !is_zero(&right) && left.middle.is_negative() != right.middle.is_negative()
+                    !is_zero(&left)
+                        && !is_zero(&right)
+                        && left.middle.is_negative() != right.middle.is_negative()
                 }
                 _ => false,
             }
@@ -288,7 +311,8 @@ impl Certificate {
 /// An equilibrium is known so well, in binary digits of the amplitude.
 const ROUNDING_OF_EQUILIBRIUM: usize = 30;
 
-/// The sum of the coefficients of a formula is its start up to so many binary digits of their size: they are doubles, of series that may cancel.
+/// The sum of the coefficients of a formula is its start up to so many binary digits of their size:
+/// they are doubles, of series that may cancel.
 const ROUNDING_OF_START: i32 = 20;
 
 /// What of a certificate may be too large, or may not fit together.
@@ -309,13 +333,22 @@ struct Sizes<'a> {
 impl Sizes<'_> {
     /// Whether no number is too large.
     fn of_numbers(&self) -> Result<(), &'static str> {
-        let has_values =
-            |(force, letters): &(&Expr, &[Symbol])| force.symbols().iter().all(|name| letters.contains(name));
+        let has_values = |(force, letters): &(&Expr, &[Symbol])| {
+            force.symbols().iter().all(|name| letters.contains(name))
+        };
         let coefficients = self.coefficients.iter().copied().flatten();
-        let all = coefficients.chain([self.number]).chain(self.inverse.iter().flatten());
+        let all = coefficients
+            .chain([self.number])
+            .chain(self.inverse.iter().flatten());
         let demands = [
-            (self.bits.iter().all(|bits| *bits <= MOST_BITS), "more than 224 bits"),
-            ((-64..=64).contains(&self.sigma), "a weight of mu beyond 2^64"),
+            (
+                self.bits.iter().all(|bits| *bits <= MOST_BITS),
+                "more than 224 bits",
+            ),
+            (
+                (-64..=64).contains(&self.sigma),
+                "a weight of mu beyond 2^64",
+            ),
             (
                 (1..=HIGHEST_HARMONIC).contains(&self.highest),
                 "a block that ends beyond harmonic 400, or has none",
@@ -325,7 +358,9 @@ impl Sizes<'_> {
                 "odd harmonics, and a block that ends with an even one",
             ),
             (
-                self.coefficients.iter().all(|list| list.len() <= 2 * HIGHEST_HARMONIC),
+                self.coefficients
+                    .iter()
+                    .all(|list| list.len() <= 2 * HIGHEST_HARMONIC),
                 "more than 800 harmonics",
             ),
             (
@@ -345,7 +380,8 @@ impl Sizes<'_> {
 
     /// Whether the inverse has as many rows and columns as there are unknowns.
     fn of_inverse(&self, unknowns: usize) -> Result<(), &'static str> {
-        match self.inverse.len() == unknowns && self.inverse.iter().all(|row| row.len() == unknowns) {
+        match self.inverse.len() == unknowns && self.inverse.iter().all(|row| row.len() == unknowns)
+        {
             true => Ok(()),
             false => Err("an inverse of another size than the block"),
         }

@@ -1,15 +1,18 @@
-//! The radii polynomial: from bounds on an approximate zero to the ball in which there is exactly one.
+//! The radii polynomial: from bounds on an approximate zero to the ball in which there is exactly
+//! one.
 //!
 //! ```text
 //! Y0 >= ||B F||,   Z1 >= ||1 - B DF||,   Z2 >= Lipschitz constant of B DF within R
 //! Z2 r^2/2 - (1 - Z1) r + Y0 <= 0:       D = (1 - Z1)^2 - 2 Y0 Z2,   r = 2 Y0/((1 - Z1) + sqrt(D))
 //! ```
 //!
-//! If `Z1 < 1`, `D > 0`, `r <= R` and `Z1 + Z2 r < 1`, the map `1 - B F` takes the ball of radius r about the approximation into itself
-//! and contracts there: it has exactly one fixed point in it, which is a zero of F where B is injective.
+//! If `Z1 < 1`, `D > 0`, `r <= R` and `Z1 + Z2 r < 1`, the map `1 - B F` takes the ball of radius r
+//! about the approximation into itself and contracts there: it has exactly one fixed point in it,
+//! which is a zero of F where B is injective.
 //!
-//! Source: A. Hungria, J.-P. Lessard, J. D. Mireles James: Rigorous numerics for analytic solutions of differential equations:
-//! the radii polynomial approach, Mathematics of Computation 85 (2016), 1427-1459.
+//! Source: A. Hungria, J.-P. Lessard, J. D. Mireles James: Rigorous numerics for analytic solutions
+//! of differential equations: the radii polynomial approach, Mathematics of Computation 85 (2016),
+//! 1427-1459.
 
 use std::fmt;
 
@@ -33,7 +36,8 @@ pub struct Proof {
     pub curvature: Bound,
 }
 
-/// Which inequality does not hold. This says nothing about the motion: another block, or more digits, may prove it.
+/// Which inequality does not hold. This says nothing about the motion: another block, or more
+/// digits, may prove it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NotProved {
@@ -41,13 +45,15 @@ pub enum NotProved {
     NoValue(String),
     /// A derivative of the force is too large to be written.
     Derivative(ExprError),
-    /// The motion is said to have odd harmonics alone, and the force is not odd, or the approximation has others.
+    /// The motion is said to have odd harmonics alone, and the force is not odd, or the
+    /// approximation has others.
     NotOdd,
     /// `Z1 >= 1`: the block does not hold enough harmonics.
     NoContraction(Bound),
     /// `D <= 0`: the approximation is too far from fulfilling the equation.
     TooFar(Bound),
-    /// The radius is beyond that on which Z2 was computed, or so large that the motion might be at rest or of another period.
+    /// The radius is beyond that on which Z2 was computed, or so large that the motion might be at
+    /// rest or of another period.
     TooLarge(Bound),
 }
 
@@ -59,10 +65,24 @@ impl fmt::Display for NotProved {
                 "`{part}` has no value on a whole ball of motions: no convergent series was found for it"
             ),
             Self::Derivative(error) => write!(formatter, "the derivatives of the force: {error}"),
-            Self::NotOdd => formatter.write_str("the equation is not odd, or there are even harmonics"),
-            Self::NoContraction(bound) => write!(formatter, "Z1 <= {} is not below 1", rounded_up(bound.value(), 4)),
-            Self::TooFar(bound) => write!(formatter, "Y0 <= {} is too large", rounded_up(bound.value(), 4)),
-            Self::TooLarge(bound) => write!(formatter, "the radius {} is too large", rounded_up(bound.value(), 4)),
+            Self::NotOdd => {
+                formatter.write_str("the equation is not odd, or there are even harmonics")
+            }
+            Self::NoContraction(bound) => write!(
+                formatter,
+                "Z1 <= {} is not below 1",
+                rounded_up(bound.value(), 4)
+            ),
+            Self::TooFar(bound) => write!(
+                formatter,
+                "Y0 <= {} is too large",
+                rounded_up(bound.value(), 4)
+            ),
+            Self::TooLarge(bound) => write!(
+                formatter,
+                "the radius {} is too large",
+                rounded_up(bound.value(), 4)
+            ),
         }
     }
 }
@@ -87,8 +107,8 @@ pub(super) struct Correction<Place> {
     pub(super) beyond: Vec<(Place, Ball)>,
 }
 
-/// The radius of the ball, with the bounds Y0 and Z1 as they are and Z2 for each R that is tried. `distinct` says whether what is in
-/// a ball of a radius is a motion of the kind that is meant.
+/// The radius of the ball, with the bounds Y0 and Z1 as they are and Z2 for each R that is tried.
+/// `distinct` says whether what is in a ball of a radius is a motion of the kind that is meant.
 ///
 /// # Errors
 /// [`NotProved`].
@@ -108,7 +128,8 @@ pub(super) fn radius(
         let within = smallest * Bound::exactly(wider);
         let curvature = curvature(within)?;
         // D >= (1 - Z1)^2 - 2 Y0 Z2.
-        let discriminant = ((left * left).next_down() - ((defect + defect) * curvature).value()).next_down();
+        let discriminant =
+            ((left * left).next_down() - ((defect + defect) * curvature).value()).next_down();
         if discriminant <= 0.0 {
             continue;
         }

@@ -1,6 +1,7 @@
 //! The theorem: whether there is exactly one motion near an approximate one, and how near.
 //!
-//! For `x'' + f(x) = 0`, `x(0) = A`, `x'(0) = 0`, and `x(t) = X(omega t)`, `X(theta) = sum c_k cos(k theta)`, `mu = 1/omega^2`:
+//! For `x'' + f(x) = 0`, `x(0) = A`, `x'(0) = 0`, and `x(t) = X(omega t)`,
+//! `X(theta) = sum c_k cos(k theta)`, `mu = 1/omega^2`:
 //!
 //! ```text
 //! F_eta = sum_k c_k - A,      F_k = -k^2 c_k + mu [f(c)]_k                    the equation in harmonics, k <= N and beyond
@@ -8,14 +9,17 @@
 //! D = (1 - Z1)^2 - 2 Y0 Z2,   r = 2 Y0/((1 - Z1) + sqrt(D))                   norm: sigma |mu| + sum_k |c_k|
 //! ```
 //!
-//! If `Z1 < 1`, `D > 0`, `r <= R`, `Z1 + Z2 r < 1`, `r/sigma < mu` and `r < |c_1|`, the map `1 - B F` takes the ball of radius r about
-//! the approximation into itself and contracts there: it holds exactly one solution, whose smallest period is `2 pi sqrt(mu)`. The
-//! approximate inverse B is a matrix on `mu` and the harmonics up to N, and `-1/k^2` beyond, whose sum the condition at `t = 0`
-//! feels. Nothing that is read here is trusted: any numbers may be claimed, and every inequality is checked in balls.
+//! If `Z1 < 1`, `D > 0`, `r <= R`, `Z1 + Z2 r < 1`, `r/sigma < mu` and `r < |c_1|`, the map
+//! `1 - B F` takes the ball of radius r about the approximation into itself and contracts there: it
+//! holds exactly one solution, whose smallest period is `2 pi sqrt(mu)`. The approximate inverse B
+//! is a matrix on `mu` and the harmonics up to N, and `-1/k^2` beyond, whose sum the condition at
+//! `t = 0` feels. Nothing that is read here is trusted: any numbers may be claimed, and every
+//! inequality is checked in balls.
 //!
-//! Source: S. Day, J.-P. Lessard, K. Mischaikow: Validated continuation for equilibria of PDEs, SIAM Journal on Numerical Analysis
-//! 45 (2007), 1398-1424; J. B. van den Berg, J.-P. Lessard: Rigorous numerics in dynamics, Notices of the AMS 62 (2015),
-//! 1057-1061. The cost is that of N^3 products of short integers.
+//! Source: S. Day, J.-P. Lessard, K. Mischaikow: Validated continuation for equilibria of PDEs,
+//! SIAM Journal on Numerical Analysis 45 (2007), 1398-1424; J. B. van den Berg, J.-P. Lessard:
+//! Rigorous numerics in dynamics, Notices of the AMS 62 (2015), 1057-1061. The cost is that of N^3
+//! products of short integers.
 
 use super::approximate_inverse::{Inverse, SHORT, image};
 use super::force::along;
@@ -47,9 +51,10 @@ pub(super) struct Neighbours {
     pub(super) slope: Ball,
 }
 
-/// Checks a certificate for every start that is within `spread` of its own: each has one motion within the radius. The equations differ
-/// in the condition at `t = 0` alone, by no more than that. With u the unknowns of a motion, `DF(u) u' = e_eta` for the derivative u' by the start,
-/// and for any v
+/// Checks a certificate for every start that is within `spread` of its own: each has one motion
+/// within the radius. The equations differ in the condition at `t = 0` alone, by no more than that.
+/// With u the unknowns of a motion, `DF(u) u' = e_eta` for the derivative u' by the start, and for
+/// any v
 ///
 /// ```text
 /// ||u' - v|| <= (||B (e_eta - DF(ubar) v)|| + Z2 r ||v||)/(1 - Z1 - Z2 r)
@@ -57,7 +62,10 @@ pub(super) struct Neighbours {
 ///
 /// # Errors
 /// [`NotProved`].
-pub(super) fn prove_around(certificate: &Certificate, spread: Bound) -> Result<Neighbours, NotProved> {
+pub(super) fn prove_around(
+    certificate: &Certificate,
+    spread: Bound,
+) -> Result<Neighbours, NotProved> {
     let theorem = Theorem::of(certificate)?;
     let [of_middle, of_all] = [theorem.proof(Bound::ZERO)?, theorem.proof(spread)?];
     let sigma = theorem.system.inverse.sigma.value();
@@ -68,7 +76,8 @@ pub(super) fn prove_around(certificate: &Certificate, spread: Bound) -> Result<N
     let (direction, left) = theorem.system.slope_by_start(&theorem.slope);
     let turned = of_all.curvature * of_all.radius;
     let contracts = (of_all.contraction + turned).below_complement();
-    let size = Bound::power_of_two(certificate.sigma) * WORKING.magnitude(&direction.mu) + direction.harmonics.norm();
+    let size = Bound::power_of_two(certificate.sigma) * WORKING.magnitude(&direction.mu)
+        + direction.harmonics.norm();
     let apart = (left + turned * size).over(contracts);
     let around = |proof: &Proof| widened(&theorem.system.mu, proof.radius.over(sigma));
     Ok(Neighbours {
@@ -142,8 +151,8 @@ impl<'a> Theorem<'a> {
     }
 }
 
-/// What is to be subtracted from `mu` and the harmonics of a certificate, so that it is nearer to the solution; nothing is proved
-/// of it.
+/// What is to be subtracted from `mu` and the harmonics of a certificate, so that it is nearer to
+/// the solution; nothing is proved of it.
 ///
 /// # Errors
 /// As [`prove`].
@@ -160,7 +169,13 @@ struct Slope {
 
 impl Slope {
     fn of(series: FourierSeries) -> Self {
-        let halved = |(k, ball): (usize, &Ball)| if k == 0 { ball.clone() } else { WORKING.divided(ball, 2) };
+        let halved = |(k, ball): (usize, &Ball)| {
+            if k == 0 {
+                ball.clone()
+            } else {
+                WORKING.divided(ball, 2)
+            }
+        };
         Self {
             halves: series.cosines.iter().enumerate().map(halved).collect(),
             series,
@@ -198,7 +213,11 @@ impl<'a> System<'a> {
     fn of(certificate: &'a Certificate) -> Result<Self, NotProved> {
         let motion = certificate.motion();
         let force = along(&certificate.force, &motion)?;
-        let inverse = Inverse::of(&certificate.inverse, certificate.inverse_bits, certificate.sigma);
+        let inverse = Inverse::of(
+            &certificate.inverse,
+            certificate.inverse_bits,
+            certificate.sigma,
+        );
         let block = certificate.block();
         let start = inverse.norm_of_column(0);
         let columns = (1..=block.len()).map(|column| inverse.norm_of_column(column));
@@ -241,7 +260,8 @@ impl<'a> System<'a> {
         WORKING.product(&self.mu, &self.force.cosine(k))
     }
 
-    /// `B F`: the correction of `mu` and of every harmonic, by which the approximation is the further off.
+    /// `B F`: the correction of `mu` and of every harmonic, by which the approximation is the
+    /// further off.
     fn correction(&self) -> Correction<usize> {
         let last = self.motion.cosines.len().max(self.force.cosines.len());
         let sum = self.motion.at_zero();
@@ -252,8 +272,14 @@ impl<'a> System<'a> {
         })
     }
 
-    /// B of what is left of the equations: of that at the start, and of those of the harmonics up to one.
-    fn image(&self, mut start: Ball, last: usize, equation: impl Fn(usize) -> Ball) -> Correction<usize> {
+    /// B of what is left of the equations: of that at the start, and of those of the harmonics up
+    /// to one.
+    fn image(
+        &self,
+        mut start: Ball,
+        last: usize,
+        equation: impl Fn(usize) -> Ball,
+    ) -> Correction<usize> {
         let mut beyond = vec![];
         for k in self.beyond(last) {
             let y = WORKING.scaled(&WORKING.divided(&equation(k), Self::square(k)), -1);
@@ -270,11 +296,16 @@ impl<'a> System<'a> {
 
     /// The norm of `mu` and harmonics.
     fn norm(&self, vector: &Correction<usize>) -> Bound {
-        let beyond: Bound = vector.beyond.iter().map(|(_, y)| WORKING.magnitude(y)).sum();
+        let beyond: Bound = vector
+            .beyond
+            .iter()
+            .map(|(_, y)| WORKING.magnitude(y))
+            .sum();
         self.inverse.norm(&vector.block, WORKING) + beyond
     }
 
-    /// Approximates the derivative of `mu` and the harmonics by the start by some v, and bounds `||B (e_eta - DF v)||`.
+    /// Approximates the derivative of `mu` and the harmonics by the start by some v, and bounds
+    /// `||B (e_eta - DF v)||`.
     fn slope_by_start(&self, slope: &Slope) -> (Direction, Bound) {
         /// Steps of Newton's iteration, each of which gains the digits of Z1.
         const STEPS: usize = 6;
@@ -302,8 +333,8 @@ impl<'a> System<'a> {
                 WORKING.difference(&inertia, &moved)
             });
             if step == STEPS {
-                let unseen =
-                    WORKING.magnitude(&direction.mu) * self.force.tail + WORKING.magnitude(&self.mu) * bent.tail;
+                let unseen = WORKING.magnitude(&direction.mu) * self.force.tail
+                    + WORKING.magnitude(&self.mu) * bent.tail;
                 let left = self.norm(&left) + self.size * unseen;
                 return (direction, left);
             }

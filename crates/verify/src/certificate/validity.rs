@@ -1,17 +1,21 @@
-//! From an amplitude to a range: a formula that is within a tolerance for every amplitude of an interval, proved.
+//! From an amplitude to a range: a formula that is within a tolerance for every amplitude of an
+//! interval, proved.
 //!
-//! An interval `|A - A_m| <= h` is one question more in the theorem: the condition at `t = 0` is off by h at most, so that
-//! `Y0 + h ||B e_eta||` stands for Y0, and the numbers of the motion at `A_m` prove all motions of the interval at once. The square of the
-//! ratio of the frequencies is `q = omega~^2 mu`, the law times `1/omega^2`, and by the mean value theorem
+//! An interval `|A - A_m| <= h` is one question more in the theorem: the condition at `t = 0` is
+//! off by h at most, so that `Y0 + h ||B e_eta||` stands for Y0, and the numbers of the motion at
+//! `A_m` prove all motions of the interval at once. The square of the ratio of the frequencies is
+//! `q = omega~^2 mu`, the law times `1/omega^2`, and by the mean value theorem
 //!
 //! ```text
 //! q(A) = q(A_m) + (A - A_m) ((omega~^2)' mu + omega~^2 mu')      with the law, mu and mu' of the whole interval in the second term
 //! ```
 //!
-//! The width of q is of the order h^2, since the two slopes are known to the order h: where the error hardly changes with A they cancel.
+//! The width of q is of the order h^2, since the two slopes are known to the order h: where the
+//! error hardly changes with A they cancel.
 //!
-//! In: an oscillator, an answer with a law in closed form, an interval of amplitudes. Out: how far the formula is proved to
-//! hold from its lower end on. Intervals are halved where they do not prove it and widened where they do; each costs a proof.
+//! In: an oscillator, an answer with a law in closed form, an interval of amplitudes. Out: how far
+//! the formula is proved to hold from its lower end on. Intervals are halved where they do not
+//! prove it and widened where they do; each costs a proof.
 
 use super::candidate::{NotCertified, certify, inverse, refine, weight};
 use super::force::along;
@@ -60,17 +64,19 @@ pub enum Beyond {
     Stopped,
 }
 
-/// Places of the range, at equal ratios, for a tolerance of a hundredth: no interval is shorter than from one to the next. For a
-/// smaller tolerance there are more, up to sixteen times as many.
+/// Places of the range, at equal ratios, for a tolerance of a hundredth: no interval is shorter
+/// than from one to the next. For a smaller tolerance there are more, up to sixteen times as many.
 const PLACES: u32 = 1 << 16;
 
 /// Binary digits of the motions, of which a few hundredths have to be proved.
 const BITS: usize = 48;
 
-/// The largest weight of an error of `mu`, as a power of two: with more the inequalities hold for shorter intervals alone.
+/// The largest weight of an error of `mu`, as a power of two: with more the inequalities hold for
+/// shorter intervals alone.
 const HEAVIEST: i32 = 4;
 
-/// How far a formula is proved to be within a tolerance, for the amplitudes from `from` to `to`, both positive.
+/// How far a formula is proved to be within a tolerance, for the amplitudes from `from` to `to`,
+/// both positive.
 ///
 /// # Errors
 /// No proof at the first amplitude, or a law that is none of the amplitude in closed form.
@@ -108,7 +114,10 @@ pub fn validity(
         _ => {
             let part = f64::from(position) / f64::from(finest);
             let place = ends[0] * (ends[1] / ends[0]).powf(part);
-            from_f64(place).map_or_else(|| from.clone(), |place| place.max(from.clone()).min(to.clone()))
+            from_f64(place).map_or_else(
+                || from.clone(),
+                |place| place.max(from.clone()).min(to.clone()),
+            )
         }
     };
     let (mut position, mut width, mut intervals, mut within) = (0, finest / 64, 0, 0.0_f64);
@@ -130,8 +139,8 @@ pub fn validity(
             }
             _ if width > 1 => width = (width / 2).min(next - position),
             _ => {
-                // At the first places beyond, the error is too near to the tolerance to be told from it.
-                // As they are printed, with six digits.
+                // At the first places beyond, the error is too near to the tolerance to be told
+                // from it. As they are printed, with six digits.
                 let shown = |position: u32| match position.min(finest) {
                     position if position == finest => to.clone(),
                     position => rounded_fraction(&place(position), 6),
@@ -232,7 +241,8 @@ impl<'a> Family<'a> {
             .value())
     }
 
-    /// The first of these amplitudes at which the formula is proved to be off by more, or what is known of the very first.
+    /// The first of these amplitudes at which the formula is proved to be off by more, or what is
+    /// known of the very first.
     fn beyond(&self, amplitudes: &[Rational; 5], tolerance: f64) -> Beyond {
         let is_further = |amplitude: &Rational| {
             let (_, certified) = certify(
@@ -244,7 +254,9 @@ impl<'a> Family<'a> {
                 .formula
                 .is_some_and(|errors| errors.relative.lower > tolerance))
         };
-        let further = amplitudes.iter().find(|amplitude| is_further(amplitude) == Ok(true));
+        let further = amplitudes
+            .iter()
+            .find(|amplitude| is_further(amplitude) == Ok(true));
         match (further, is_further(&amplitudes[0])) {
             (Some(further), _) => Beyond::Further(further.clone()),
             (None, Ok(_)) => Beyond::Open(amplitudes[0].clone()),
@@ -253,7 +265,8 @@ impl<'a> Family<'a> {
     }
 }
 
-/// The proof of all motions whose start is so near, with a larger block where that of the last one is too small.
+/// The proof of all motions whose start is so near, with a larger block where that of the last one
+/// is too small.
 fn proved(certificate: &mut Certificate, spread: Bound) -> Result<Neighbours, NotProved> {
     certificate.sigma = weight(&certificate.inverse).min(HEAVIEST);
     match prove_around(certificate, spread) {

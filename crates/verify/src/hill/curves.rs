@@ -1,8 +1,9 @@
 //! The transition curves of one tongue, exact, order by order.
 //!
-//! On them a motion of the period 4 pi/Omega exists, `x(phi)` with `phi = Omega t/2`, so that the mean stiffness `lambda` is an
-//! eigenvalue. What belongs to the harmonic n is split off (C. Bloch, Nucl. Phys. 6 (1958) 329): with `X` the motions that begin as
-//! `cos n phi` and `sin n phi`, and have nothing else of harmonic n,
+//! On them a motion of the period 4 pi/Omega exists, `x(phi)` with `phi = Omega t/2`, so that the
+//! mean stiffness `lambda` is an eigenvalue. What belongs to the harmonic n is split off (C. Bloch,
+//! Nucl. Phys. 6 (1958) 329): with `X` the motions that begin as `cos n phi` and `sin n phi`, and
+//! have nothing else of harmonic n,
 //!
 //! ```text
 //! lambda x = -(Omega^2/4) x_phiphi - (Omega/2) c x_phi - p x =: (M0 + V) x
@@ -10,9 +11,10 @@
 //! (k^2 - n^2) Omega^2/4 [X_j]_k = [sum_(i>=1) X_(j-i) H_i - sum_(i>=1) V_i X_(j-i)]_k,   k /= n
 //! ```
 //!
-//! The eigenvalues of the two by two matrix H are the two curves: its diagonal where it has no other entries, and otherwise
-//! `C -+ sqrt(Q)`, `C = tr H/2`, `Q = C^2 - det H`. C and Q are power series in what is small even where the curves are none, as
-//! at the tip of a tongue that damping has drawn back.
+//! The eigenvalues of the two by two matrix H are the two curves: its diagonal where it has no
+//! other entries, and otherwise `C -+ sqrt(Q)`, `C = tr H/2`, `Q = C^2 - det H`. C and Q are power
+//! series in what is small even where the curves are none, as at the tip of a tongue that damping
+//! has drawn back.
 
 use std::collections::BTreeMap;
 
@@ -28,7 +30,8 @@ use crate::symbol::Symbol;
 /// One curve: `middle`, or `middle -+ sqrt(under_root)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TransitionCurve {
-    /// `a1` and `b1` for a motion of cosines and one of sines; `lower1` and `upper1` where it is of both.
+    /// `a1` and `b1` for a motion of cosines and one of sines; `lower1` and `upper1` where it is of
+    /// both.
     pub name: String,
     /// n: on the curve a motion of the frequency n*Omega/2 exists.
     pub tongue: usize,
@@ -36,7 +39,8 @@ pub struct TransitionCurve {
     pub middle: Polynomial,
     /// What stands under the root; none where the curve is a power series.
     pub under_root: Option<Polynomial>,
-    /// Whether it is the upper one of its pair where what is small is positive: the one to which the root is added.
+    /// Whether it is the upper one of its pair where what is small is positive: the one to which
+    /// the root is added.
     pub upper: bool,
     /// What the motion on the curve is made of.
     pub motion: WavesOfMotion,
@@ -54,7 +58,11 @@ pub enum WavesOfMotion {
 }
 
 /// The curves of tongue n.
-pub(super) fn of_tongue(hill: &Hill, tongue: usize, order: u32) -> Result<Vec<TransitionCurve>, HillError> {
+pub(super) fn of_tongue(
+    hill: &Hill,
+    tongue: usize,
+    order: u32,
+) -> Result<Vec<TransitionCurve>, HillError> {
     let matrix = effective_matrix(hill, tongue, order);
     let [[cosine, upper_right], [lower_left, _]] = &matrix;
     if tongue == 0 {
@@ -96,7 +104,12 @@ fn of_waves(letter: &str, tongue: usize, middle: Polynomial) -> TransitionCurve 
 }
 
 /// Both curves where H has nothing beside its diagonal: each of its entries has its own.
-fn separate(hill: &Hill, tongue: usize, order: u32, matrix: &[[Polynomial; 2]; 2]) -> Vec<TransitionCurve> {
+fn separate(
+    hill: &Hill,
+    tongue: usize,
+    order: u32,
+    matrix: &[[Polynomial; 2]; 2],
+) -> Vec<TransitionCurve> {
     let power = Powers { hill, order };
     let [[cosine, _], [_, sine]] = matrix;
     let mut pair = vec![
@@ -127,7 +140,10 @@ fn mixed(hill: &Hill, tongue: usize, order: u32) -> Vec<TransitionCurve> {
     // What opens the tongue enters Q squared: with the power 2 n.
     let beyond = order.max(2 * tongue as u32);
     let further = effective_matrix(hill, tongue, beyond);
-    let power = Powers { hill, order: beyond };
+    let power = Powers {
+        hill,
+        order: beyond,
+    };
     let (middle, root) = middle_and_square(&power, tongue, &further);
     let middle = power.cut(&middle, order.into());
     let shown = i64::from(order.max(beyond - 1)) + 1;
@@ -156,8 +172,13 @@ fn mixed(hill: &Hill, tongue: usize, order: u32) -> Vec<TransitionCurve> {
     vec![curve(false), curve(true)]
 }
 
-/// The mean of the diagonal of H, and the square of what the curves lie beside it, for the unknown that is solved for.
-fn middle_and_square(power: &Powers, tongue: usize, matrix: &[[Polynomial; 2]; 2]) -> (Polynomial, Polynomial) {
+/// The mean of the diagonal of H, and the square of what the curves lie beside it, for the unknown
+/// that is solved for.
+fn middle_and_square(
+    power: &Powers,
+    tongue: usize,
+    matrix: &[[Polynomial; 2]; 2],
+) -> (Polynomial, Polynomial) {
     let hill = power.hill;
     let [[cosine, upper_right], [lower_left, sine]] = matrix;
     let middle = cosine.sum_with(sine).scaled(&ratio(1, 2));
@@ -221,7 +242,12 @@ fn effective_matrix(hill: &Hill, tongue: usize, order: u32) -> [[Polynomial; 2];
                 image = image.difference(&stiffness.product(wave));
                 image = image.difference(&half.product(&damping.product(&wave.derivative())));
             }
-            let entry = |k: usize| (image.cosine(k).constant_term(), image.sine(k).constant_term());
+            let entry = |k: usize| {
+                (
+                    image.cosine(k).constant_term(),
+                    image.sine(k).constant_term(),
+                )
+            };
             let (cosine, sine) = entry(tongue);
             matrix[0][*column] = cosine;
             matrix[1][*column] = sine;
@@ -299,7 +325,10 @@ impl Powers<'_> {
     }
 
     fn least_degree(&self, polynomial: &Polynomial) -> Option<i64> {
-        polynomial.terms().map(|(monomial, _)| self.degree(monomial)).min()
+        polynomial
+            .terms()
+            .map(|(monomial, _)| self.degree(monomial))
+            .min()
     }
 
     fn kept(&self, polynomial: &Polynomial, keep: impl Fn(i64) -> bool) -> Polynomial {
@@ -314,14 +343,17 @@ impl Powers<'_> {
         self.kept(polynomial, |degree| degree <= highest)
     }
 
-    /// Whether the first of two curves is the upper one just above zero of all that is small, other letters being positive.
+    /// Whether the first of two curves is the upper one just above zero of all that is small, other
+    /// letters being positive.
     fn is_above(&self, first: &Polynomial, second: &Polynomial) -> bool {
         let difference = first.less(second);
         let Some(least) = self.least_degree(&difference) else {
             return false;
         };
         let leading = self.kept(&difference, |degree| degree == least);
-        leading.evaluate(|_| Some(1.0)).is_ok_and(|value| value > 0.0)
+        leading
+            .evaluate(|_| Some(1.0))
+            .is_ok_and(|value| value > 0.0)
     }
 
     /// Whether what a curve gives falls where the eigenvalue grows.
@@ -347,7 +379,9 @@ impl Powers<'_> {
     /// The curve on which the mean stiffness is `eigenvalue`.
     fn solved(&self, eigenvalue: &Polynomial, tongue: usize) -> Polynomial {
         match self.hill.unknown {
-            Unknown::Stiffness { .. } => eigenvalue.less(&self.hill.constant).product(&self.inverse_factor()),
+            Unknown::Stiffness { .. } => eigenvalue
+                .less(&self.hill.constant)
+                .product(&self.inverse_factor()),
             Unknown::Frequency(name) => {
                 // constant = n^2 w/4 + rest(w): from the right side of the order before.
                 let scale = self.first_square(tongue);
@@ -357,7 +391,10 @@ impl Powers<'_> {
                 for order in 1..=self.order {
                     let round = Powers { order, ..*self };
                     let rest = round.with_square(&rest, name, &square);
-                    square = self.cut(&scale.product(&self.hill.constant.less(&rest)), order.into());
+                    square = self.cut(
+                        &scale.product(&self.hill.constant.less(&rest)),
+                        order.into(),
+                    );
                 }
                 square
             }
@@ -370,13 +407,29 @@ impl Powers<'_> {
         Polynomial::constant(ratio(4, 1) / (fraction(tongue * tongue, 1) * number * number))
     }
 
-    /// A polynomial in even powers, of either sign, of `name`, with a power series in place of its square.
-    fn with_square(&self, polynomial: &Polynomial, name: Symbol, square: &Polynomial) -> Polynomial {
-        let exponents = || polynomial.terms().map(|(monomial, _)| monomial.exponent(name) / 2);
-        let highest = |sign: i32| exponents().map(|exponent| sign * exponent).max().unwrap_or(0).max(0);
+    /// A polynomial in even powers, of either sign, of `name`, with a power series in place of its
+    /// square.
+    fn with_square(
+        &self,
+        polynomial: &Polynomial,
+        name: Symbol,
+        square: &Polynomial,
+    ) -> Polynomial {
+        let exponents = || {
+            polynomial
+                .terms()
+                .map(|(monomial, _)| monomial.exponent(name) / 2)
+        };
+        let highest = |sign: i32| {
+            exponents()
+                .map(|exponent| sign * exponent)
+                .max()
+                .unwrap_or(0)
+                .max(0)
+        };
         let inverse = self.inverse(square);
-        let [above, below] =
-            [(square, highest(1)), (&inverse, highest(-1))].map(|(base, highest)| self.powers(base, highest));
+        let [above, below] = [(square, highest(1)), (&inverse, highest(-1))]
+            .map(|(base, highest)| self.powers(base, highest));
         let mut sum = Polynomial::zero();
         for (monomial, number) in polynomial.terms() {
             let exponent = monomial.exponent(name) / 2;
@@ -393,7 +446,9 @@ impl Powers<'_> {
         let by_degree = |polynomial: &Polynomial| {
             let mut parts: BTreeMap<i64, Polynomial> = BTreeMap::new();
             for (monomial, number) in polynomial.terms() {
-                let part = parts.entry(self.degree(monomial)).or_insert_with(Polynomial::zero);
+                let part = parts
+                    .entry(self.degree(monomial))
+                    .or_insert_with(Polynomial::zero);
                 part.add_term(monomial.clone(), number.clone());
             }
             parts
@@ -460,15 +515,20 @@ impl Powers<'_> {
                 .scaled(&ratio(1, 2));
             correction = self.cut(&right, self.order.into());
         }
-        let whole = correction
-            .terms()
-            .all(|(monomial, _)| self.hill.small.iter().all(|name| monomial.exponent(*name) >= 0));
+        let whole = correction.terms().all(|(monomial, _)| {
+            self.hill
+                .small
+                .iter()
+                .all(|name| monomial.exponent(*name) >= 0)
+        });
         whole.then(|| root.sum_with(&correction))
     }
 
-    /// Middle and half distance squared of `w = Omega^2` from those of the eigenvalues at a given w: Weierstrass's polynomial
-    /// `v^2 + b v + e`, `v = w - w_0`, of `F(w) = (lambda - C(w))^2 - Q(w)`, which has the two roots that vanish with what is small.
-    /// Dividing `v^2 = q F + r` gives it: `E q = 1 - hi(q lo(F))`, where `F = lo(F) + v^2 E` and lo is of degree one in v.
+    /// Middle and half distance squared of `w = Omega^2` from those of the eigenvalues at a given
+    /// w: Weierstrass's polynomial `v^2 + b v + e`, `v = w - w_0`, of
+    /// `F(w) = (lambda - C(w))^2 - Q(w)`, which has the two roots that vanish with what is small.
+    /// Dividing `v^2 = q F + r` gives it: `E q = 1 - hi(q lo(F))`, where `F = lo(F) + v^2 E` and lo
+    /// is of degree one in v.
     fn frequency_squared(
         &self,
         middle: &Polynomial,
@@ -496,7 +556,10 @@ impl Powers<'_> {
             order: self.order,
         };
         let square = first.sum_with(&Polynomial::symbol(v));
-        let distance = self.hill.constant.less(&power.with_square(middle, name, &square));
+        let distance = self
+            .hill
+            .constant
+            .less(&power.with_square(middle, name, &square));
         let function = power
             .product(&distance, &distance, highest)
             .less(&power.with_square(root, name, &square));
@@ -506,7 +569,9 @@ impl Powers<'_> {
             for (monomial, number) in polynomial.terms() {
                 match monomial.exponent(v) < 2 {
                     true => low.add_term(monomial.clone(), number.clone()),
-                    false => high.add_term(monomial.product(&Monomial::power_of(v, -2)), number.clone()),
+                    false => {
+                        high.add_term(monomial.product(&Monomial::power_of(v, -2)), number.clone())
+                    }
                 }
             }
             [low, high]
@@ -515,7 +580,8 @@ impl Powers<'_> {
         let unit = power.inverse(&high);
         let one = Polynomial::constant(Rational::one());
         let mut quotient = unit.clone();
-        // Each round is right to one order more in what is small beside v, since that is what every term of lo(F) has.
+        // Each round is right to one order more in what is small beside v, since that is what every
+        // term of lo(F) has.
         for order in 1..=highest {
             let [_, above] = split(&power.product(&quotient, &low, highest + 2));
             let next = power.product(&unit, &one.less(&above), highest);
@@ -526,7 +592,10 @@ impl Powers<'_> {
         let [remainder, _] = split(&v_squared.less(&power.product(&quotient, &function, highest)));
         let at = |exponent: i32| {
             let mut part = Polynomial::zero();
-            for (monomial, number) in remainder.terms().filter(|term| term.0.exponent(v) == exponent) {
+            for (monomial, number) in remainder
+                .terms()
+                .filter(|term| term.0.exponent(v) == exponent)
+            {
                 part.add_term(monomial.without(v), number.clone());
             }
             part

@@ -1,14 +1,16 @@
 //! Hill's equation: linear, with coefficients that are periodic in time, such as Mathieu's.
 //!
-//! References: A. H. Nayfeh and D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapter 5; W. Magnus and S. Winkler, *Hill's
-//! Equation*, Wiley 1966; M. Abramowitz and I. A. Stegun, *Handbook of Mathematical Functions*, chapter 20, for the names a_n and b_n.
+//! References: A. H. Nayfeh and D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, chapter 5; W.
+//! Magnus and S. Winkler, *Hill's Equation*, Wiley 1966; M. Abramowitz and I. A. Stegun, *Handbook
+//! of Mathematical Functions*, chapter 20, for the names a_n and b_n.
 //!
 //! ```text
 //! x'' + c(t) x' + (r delta + p(t)) x = 0,   c, p of the period T = 2 pi/Omega, small with eps
 //! ```
 //!
-//! In comes an [`Oscillator`] of this form; out go its transition curves `delta(eps)`, exact to an order: there a motion of period T or 2 T
-//! exists, and between two of them that belong together rest is unstable. They are judged by Floquet's multipliers of the equation.
+//! In comes an [`Oscillator`] of this form; out go its transition curves `delta(eps)`, exact to an
+//! order: there a motion of period T or 2 T exists, and between two of them that belong together
+//! rest is unstable. They are judged by Floquet's multipliers of the equation.
 
 mod curves;
 mod periodic;
@@ -94,7 +96,10 @@ impl Unknown {
 
     /// The left side of a curve: `delta`, `Omega^2`.
     pub fn given(self) -> Polynomial {
-        Polynomial::term(Monomial::power_of(self.symbol(), self.power()), Rational::one())
+        Polynomial::term(
+            Monomial::power_of(self.symbol(), self.power()),
+            Rational::one(),
+        )
     }
 }
 
@@ -111,8 +116,8 @@ pub struct TransitionCurves {
     pub order: u32,
     /// The letters of the equation.
     pub parameters: Vec<Symbol>,
-    /// The letter W of the dimensionless time `tau = W*t` in which the coefficients below are written; `None` where they are
-    /// functions of the time of the equation.
+    /// The letter W of the dimensionless time `tau = W*t` in which the coefficients below are
+    /// written; `None` where they are functions of the time of the equation.
     pub time_scale: Option<Symbol>,
     /// The frequency of the coefficients.
     pub frequency: Frequency,
@@ -122,7 +127,8 @@ pub struct TransitionCurves {
     pub stiffness: Expr,
     /// The highest harmonic of both, in halves of their frequency.
     pub highest_harmonic: usize,
-    /// The curves, those of tongue 0 first, the lower one of a pair before the upper one where all that is small is positive.
+    /// The curves, those of tongue 0 first, the lower one of a pair before the upper one where all
+    /// that is small is positive.
     pub curves: Vec<TransitionCurve>,
 }
 
@@ -168,7 +174,11 @@ impl TransitionCurve {
             return Ok(middle);
         };
         let root = Expr::from(root).sqrt()?;
-        Ok(if self.upper { &middle + &root } else { &middle - &root })
+        Ok(if self.upper {
+            &middle + &root
+        } else {
+            &middle - &root
+        })
     }
 }
 
@@ -180,7 +190,9 @@ pub enum HillError {
     #[error(transparent)]
     Expression(#[from] ExprError),
     /// A term that is not linear in the coordinate.
-    #[error("the stability of rest is that of the linear equation, but the term `{0}` is not linear")]
+    #[error(
+        "the stability of rest is that of the linear equation, but the term `{0}` is not linear"
+    )]
     NotLinear(String),
     /// A term without the coordinate.
     #[error("the term `{0}` drives the motion and has no part in the stability of rest")]
@@ -208,7 +220,9 @@ pub enum HillError {
     )]
     InSeveralTerms(Symbol, String),
     /// A mean stiffness that is zero where the frequency is asked for.
-    #[error("the mean stiffness is `{0}`, and the frequency can be found beside a single positive term alone")]
+    #[error(
+        "the mean stiffness is `{0}`, and the frequency can be found beside a single positive term alone"
+    )]
     Stiffness(String),
     /// A coefficient that is a number.
     #[error("the coefficient of `{0}` is a number, and the expansion is in a small letter")]
@@ -223,7 +237,9 @@ pub enum HillError {
     #[error("the term `{0}` does not vanish with {1}")]
     NotSmall(String, String),
     /// An order beyond the limits.
-    #[error("the order is a whole number from 1 to {HIGHEST_ORDER}, the tongues are 0 to {MOST_TONGUES}")]
+    #[error(
+        "the order is a whole number from 1 to {HIGHEST_ORDER}, the tongues are 0 to {MOST_TONGUES}"
+    )]
     Limits,
 }
 
@@ -231,9 +247,10 @@ impl HillError {
     /// The term it names, as it was typed.
     pub fn term(&self) -> Option<&str> {
         match self {
-            Self::NotLinear(term) | Self::Drive(term) | Self::NotPeriodic(term) | Self::NumberIsSmall(term) => {
-                Some(term)
-            }
+            Self::NotLinear(term)
+            | Self::Drive(term)
+            | Self::NotPeriodic(term)
+            | Self::NumberIsSmall(term) => Some(term),
             _ => None,
         }
     }
@@ -256,7 +273,9 @@ impl HillError {
                 "choose one with `--for NAME`"
             }
             Self::Stiffness(_) => "choose a letter of the mean stiffness with `--for NAME`",
-            Self::NumberIsSmall(_) => "write `eps*cos(2*t)` and give its number with `--at eps=0.2`",
+            Self::NumberIsSmall(_) => {
+                "write `eps*cos(2*t)` and give its number with `--at eps=0.2`"
+            }
             Self::SeveralSmall(_) | Self::UnknownSmall(_) | Self::NotSmall(..) => {
                 "name those that are small with `--small NAME`, repeated"
             }
@@ -269,7 +288,8 @@ impl HillError {
 /// An equation taken apart.
 struct Hill {
     unknown: Unknown,
-    /// The term that stands before the unknown power in the mean stiffness; zero where the frequency is unknown.
+    /// The term that stands before the unknown power in the mean stiffness; zero where the
+    /// frequency is unknown.
     factor: Polynomial,
     /// What of the mean stiffness is neither the unknown nor small.
     constant: Polynomial,
@@ -299,7 +319,10 @@ struct Hill {
 /// assert_eq!(formulas, ["a0: -eps^2/8", "a1: 1 - eps/2 - eps^2/32", "b1: 1 + eps/2 - eps^2/32"]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn transition_curves(oscillator: &Oscillator, options: &Options) -> Result<TransitionCurves, HillError> {
+pub fn transition_curves(
+    oscillator: &Oscillator,
+    options: &Options,
+) -> Result<TransitionCurves, HillError> {
     if options.order == 0 || options.order > HIGHEST_ORDER || options.tongues > MOST_TONGUES {
         return Err(HillError::Limits);
     }
@@ -354,16 +377,22 @@ fn linear_coefficients(oscillator: &Oscillator) -> Result<[Expr; 2], HillError> 
         )));
     }
     let free = |term: &Expr| !term.contains(x) && !term.contains(v);
-    if let Some(term) = force.terms().iter().find(|term| free(term) && !term.is_zero()) {
+    if let Some(term) = force
+        .terms()
+        .iter()
+        .find(|term| free(term) && !term.is_zero())
+    {
         let acceleration = v.derivative();
-        let drives = |typed: &Expr| free(typed) && !typed.contains(acceleration) && !typed.is_zero();
+        let drives =
+            |typed: &Expr| free(typed) && !typed.contains(acceleration) && !typed.is_zero();
         return Err(HillError::Drive(as_typed(oscillator, &drives, term)));
     }
     Ok([damping, stiffness])
 }
 
-/// The letter W of the frequency of the waves if it stands in the coefficients as well, as in `amp*W^2*cos(W*t)`, and is what the
-/// curves are wanted for: the one asked for, or the only one there is.
+/// The letter W of the frequency of the waves if it stands in the coefficients as well, as in
+/// `amp*W^2*cos(W*t)`, and is what the curves are wanted for: the one asked for, or the only one
+/// there is.
 fn time_scale(coefficients: &[Expr; 2], asked: Option<&str>) -> Option<Symbol> {
     let frequency = periodic::frequency(coefficients).ok()??;
     let [(name, 1)] = frequency.unit.factors() else {
@@ -373,13 +402,23 @@ fn time_scale(coefficients: &[Expr; 2], asked: Option<&str>) -> Option<Symbol> {
     for coefficient in coefficients {
         series.push(periodic::series(coefficient, &frequency).ok()?);
     }
-    let stands = |polynomial: &Polynomial| polynomial.terms().any(|(monomial, _)| monomial.exponent(*name) != 0);
-    if !series.iter().flat_map(FourierSeries::numerators).any(stands) {
+    let stands = |polynomial: &Polynomial| {
+        polynomial
+            .terms()
+            .any(|(monomial, _)| monomial.exponent(*name) != 0)
+    };
+    if !series
+        .iter()
+        .flat_map(FourierSeries::numerators)
+        .any(stands)
+    {
         return None;
     }
     let is_wanted = match asked {
         Some(asked) => asked == name.name(),
-        None => stiffness_letters(&series[1].constant_term()).next().is_none(),
+        None => stiffness_letters(&series[1].constant_term())
+            .next()
+            .is_none(),
     };
     is_wanted.then_some(*name)
 }
@@ -397,10 +436,11 @@ fn in_scaled_time([damping, stiffness]: &[Expr; 2], name: Symbol) -> Result<[Exp
 
 /// The letters that stand as a term of the mean stiffness by themselves.
 fn stiffness_letters(mean: &Polynomial) -> impl Iterator<Item = Symbol> {
-    mean.terms().filter_map(|(monomial, _)| match monomial.factors() {
-        [(name, 1)] => Some(*name),
-        _ => None,
-    })
+    mean.terms()
+        .filter_map(|(monomial, _)| match monomial.factors() {
+            [(name, 1)] => Some(*name),
+            _ => None,
+        })
 }
 
 /// The first typed term that answers to `is_meant`; else the term as it was understood.
@@ -438,13 +478,21 @@ impl Hill {
         if periodic::is_constant(&damping) && periodic::is_constant(&stiffness) {
             return Err(HillError::Constant);
         }
-        let (frequency, [damping, stiffness]) = periodic::in_lowest_terms(frequency, [damping, stiffness]);
+        let (frequency, [damping, stiffness]) =
+            periodic::in_lowest_terms(frequency, [damping, stiffness]);
         let mean = stiffness.constant_term();
-        let asked = time_scale.map(Symbol::name).or(options.solve_for.as_deref());
-        let unknown = unknown(&mean, [&damping, &stiffness], &frequency, asked).map_err(|error| match time_scale {
-            Some(name) => HillError::InSeveralTerms(name, terms_with(name, [&damping, &stiffness])),
-            None => error,
-        })?;
+        let asked = time_scale
+            .map(Symbol::name)
+            .or(options.solve_for.as_deref());
+        let unknown =
+            unknown(&mean, [&damping, &stiffness], &frequency, asked).map_err(|error| {
+                match time_scale {
+                    Some(name) => {
+                        HillError::InSeveralTerms(name, terms_with(name, [&damping, &stiffness]))
+                    }
+                    None => error,
+                }
+            })?;
         let small = small(oscillator, [&damping, &stiffness], &frequency, options)?;
         let degree = |monomial: &Monomial| {
             small
@@ -455,7 +503,9 @@ impl Hill {
         let (mut constant, mut factor) = (Polynomial::zero(), Polynomial::zero());
         for (monomial, number) in mean.terms() {
             match unknown {
-                Unknown::Stiffness { name, .. } if monomial.exponent(name) != 0 && degree(monomial) == 0 => {
+                Unknown::Stiffness { name, .. }
+                    if monomial.exponent(name) != 0 && degree(monomial) == 0 =>
+                {
                     factor = Polynomial::term(monomial.without(name), number.clone());
                 }
                 _ if degree(monomial) == 0 => constant.add_term(monomial.clone(), number.clone()),
@@ -469,8 +519,8 @@ impl Hill {
             return Err(HillError::Stiffness(constant.to_string()));
         }
         let kept = unknown.given().product(&factor);
-        let kept =
-            FourierSeries::constant(POLYNOMIALS, constant.clone()).sum(&FourierSeries::constant(POLYNOMIALS, kept));
+        let kept = FourierSeries::constant(POLYNOMIALS, constant.clone())
+            .sum(&FourierSeries::constant(POLYNOMIALS, kept));
         let varying = stiffness.difference(&kept);
         let names: Vec<&str> = small.iter().map(|name| name.name()).collect();
         let terms = || {
@@ -479,8 +529,11 @@ impl Hill {
                 .chain(damping.numerators())
                 .flat_map(Polynomial::terms)
         };
-        let enters_otherwise = |monomial: &Monomial| small.iter().any(|name| monomial.exponent(*name) < 0);
-        if let Some((monomial, number)) = terms().find(|term| degree(term.0) < 1 || enters_otherwise(term.0)) {
+        let enters_otherwise =
+            |monomial: &Monomial| small.iter().any(|name| monomial.exponent(*name) < 0);
+        if let Some((monomial, number)) =
+            terms().find(|term| degree(term.0) < 1 || enters_otherwise(term.0))
+        {
             let term = Polynomial::term(monomial.clone(), number.clone());
             return Err(HillError::NotSmall(term.to_string(), names.join(", ")));
         }
@@ -488,7 +541,8 @@ impl Hill {
         let part = |series: &FourierSeries<Polynomials>, wanted: i64| {
             series.map(POLYNOMIALS, |polynomial, _| {
                 let mut part = Polynomial::zero();
-                for (monomial, number) in polynomial.terms().filter(|term| degree(term.0) == wanted) {
+                for (monomial, number) in polynomial.terms().filter(|term| degree(term.0) == wanted)
+                {
                     part.add_term(monomial.clone(), number.clone());
                 }
                 part
@@ -526,8 +580,9 @@ fn unknown(
             *seen.entry(*name).or_default() += 1;
         }
     }
-    let alone =
-        |name: &Symbol| seen.get(name) == Some(&1) && frequency.unit.exponent(*name) == 0 && name.name() != "pi";
+    let alone = |name: &Symbol| {
+        seen.get(name) == Some(&1) && frequency.unit.exponent(*name) == 0 && name.name() != "pi"
+    };
     let candidates: Vec<Symbol> = stiffness_letters(mean).filter(alone).collect();
     let driving = match frequency.unit.factors() {
         [(name, 1)] if !seen.contains_key(name) => Some(*name),
@@ -547,8 +602,14 @@ fn unknown(
     }
     let delta = Symbol::new("delta");
     match (candidates.as_slice(), driving) {
-        ([only], _) => Ok(Unknown::Stiffness { name: *only, power: 1 }),
-        (several, _) if several.contains(&delta) => Ok(Unknown::Stiffness { name: delta, power: 1 }),
+        ([only], _) => Ok(Unknown::Stiffness {
+            name: *only,
+            power: 1,
+        }),
+        (several, _) if several.contains(&delta) => Ok(Unknown::Stiffness {
+            name: delta,
+            power: 1,
+        }),
         ([], Some(frequency)) => Ok(Unknown::Frequency(frequency)),
         ([], None) => Err(HillError::NoUnknown),
         (several, _) => Err(HillError::SeveralUnknowns(listed(several))),
@@ -563,7 +624,12 @@ fn terms_with(name: Symbol, coefficients: [&FourierSeries<Polynomials>; 2]) -> S
         .flat_map(Polynomial::terms);
     let mut terms: Vec<String> = terms
         .filter(|(monomial, _)| monomial.exponent(name) != 0)
-        .map(|(monomial, number)| format!("`{}`", Expr::from(&Polynomial::term(monomial.clone(), number.clone()))))
+        .map(|(monomial, number)| {
+            format!(
+                "`{}`",
+                Expr::from(&Polynomial::term(monomial.clone(), number.clone()))
+            )
+        })
         .collect();
     terms.dedup();
     terms.join(", ")
@@ -574,7 +640,8 @@ fn listed(names: &[Symbol]) -> String {
     names.join(", ")
 }
 
-/// What is small: what was named, or `eps` and every letter that alone stands before a wave or the velocity.
+/// What is small: what was named, or `eps` and every letter that alone stands before a wave or the
+/// velocity.
 fn small(
     oscillator: &Oscillator,
     [damping, stiffness]: [&FourierSeries<Polynomials>; 2],
@@ -594,7 +661,10 @@ fn small(
         }
         return Ok(known);
     }
-    let waves = stiffness.harmonics().into_iter().filter(|(harmonic, ..)| *harmonic > 0);
+    let waves = stiffness
+        .harmonics()
+        .into_iter()
+        .filter(|(harmonic, ..)| *harmonic > 0);
     let before_waves = waves.flat_map(|(_, cosine, sine)| [cosine, sine]);
     let before_velocity = damping
         .harmonics()
@@ -616,7 +686,9 @@ fn small(
         })
         .collect();
     if let Some((_, number)) = terms.iter().find(|(letters, _)| letters.is_empty()) {
-        let whose = |typed: &Expr| typed.contains(Symbol::new("t")) || typed.contains(oscillator.velocity());
+        let whose = |typed: &Expr| {
+            typed.contains(Symbol::new("t")) || typed.contains(oscillator.velocity())
+        };
         let term = as_typed(oscillator, &whose, &Expr::symbol("t"));
         return Err(HillError::NumberIsSmall(match term.as_str() {
             "t" => number.clone(),
@@ -635,7 +707,10 @@ fn small(
     }
     // Of `amp/l` beside the mean stiffness `g/l` only the amplitude can vanish alone.
     let mean = stiffness.constant_term();
-    let in_mean = |name: &Symbol| mean.terms().any(|(monomial, _)| monomial.exponent(*name) != 0);
+    let in_mean = |name: &Symbol| {
+        mean.terms()
+            .any(|(monomial, _)| monomial.exponent(*name) != 0)
+    };
     for (letters, _) in &terms {
         if !letters.iter().any(|name| small.contains(name)) {
             let mut of_waves_alone = letters.iter().filter(|name| !in_mean(name));

@@ -1,7 +1,9 @@
-//! An expression of the time as a finite Fourier series: `cos(m*Omega*t)`, `sin(m*Omega*t)`, their products and powers.
+//! An expression of the time as a finite Fourier series: `cos(m*Omega*t)`, `sin(m*Omega*t)`, their
+//! products and powers.
 //!
-//! In: an expression, the parameters being letters. Out: its exact series in `phi = Omega*t/2`, in whose even harmonics the period of
-//! the coefficients stands, so that motions of twice that period have a place too. What is no such sum is handed back.
+//! In: an expression, the parameters being letters. Out: its exact series in `phi = Omega*t/2`, in
+//! whose even harmonics the period of the coefficients stands, so that motions of twice that period
+//! have a place too. What is no such sum is handed back.
 
 use std::convert::Infallible;
 
@@ -20,7 +22,8 @@ const MOST_HARMONICS: usize = 200;
 /// The highest power of a sum of waves that is written out.
 const HIGHEST_POWER: u32 = 40;
 
-/// The angular frequency of which all waves are multiples: `number * unit`, where the unit is a product of letters, or one.
+/// The angular frequency of which all waves are multiples: `number * unit`, where the unit is a
+/// product of letters, or one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frequency {
     /// The number before the letters, positive.
@@ -38,7 +41,9 @@ impl Frequency {
     /// How often `rate` holds it.
     fn multiple(&self, rate: &Rational) -> Option<usize> {
         let multiple = rate / &self.number;
-        multiple.is_integer().then(|| multiple.to_integer().to_usize())?
+        multiple
+            .is_integer()
+            .then(|| multiple.to_integer().to_usize())?
     }
 }
 
@@ -60,7 +65,9 @@ fn common(a: &Rational, b: &Rational) -> Rational {
 ///
 /// # Errors
 /// A wave whose argument is no multiple of the time, or of another frequency than those before it.
-pub fn frequency<'a>(expressions: impl IntoIterator<Item = &'a Expr>) -> Result<Option<Frequency>, Expr> {
+pub fn frequency<'a>(
+    expressions: impl IntoIterator<Item = &'a Expr>,
+) -> Result<Option<Frequency>, Expr> {
     let mut found: Option<Frequency> = None;
     for expression in expressions {
         for wave in waves(expression) {
@@ -84,7 +91,12 @@ pub fn frequency<'a>(expressions: impl IntoIterator<Item = &'a Expr>) -> Result<
 /// Every `sin` and `cos` of the time.
 fn waves(expression: &Expr) -> Vec<Expr> {
     let time = Symbol::new("t");
-    let is_wave = |part: &&Expr| matches!(part.node(), Node::Function(Function::Sin | Function::Cos, _));
+    let is_wave = |part: &&Expr| {
+        matches!(
+            part.node(),
+            Node::Function(Function::Sin | Function::Cos, _)
+        )
+    };
     let waves = expression.unique_nodes().filter(is_wave);
     waves.filter(|wave| wave.contains(time)).cloned().collect()
 }
@@ -93,7 +105,10 @@ fn waves(expression: &Expr) -> Vec<Expr> {
 ///
 /// # Errors
 /// The first term of the expression that is no sum of waves with polynomial coefficients.
-pub fn series(expression: &Expr, frequency: &Frequency) -> Result<FourierSeries<Polynomials>, Expr> {
+pub fn series(
+    expression: &Expr,
+    frequency: &Frequency,
+) -> Result<FourierSeries<Polynomials>, Expr> {
     let term = |term: &Expr| {
         let series = term.fold(|part, parts: &[Option<FourierSeries<Polynomials>>]| {
             Ok::<_, Infallible>(series_of(part, parts, frequency))
@@ -108,7 +123,8 @@ pub fn series(expression: &Expr, frequency: &Frequency) -> Result<FourierSeries<
         .try_fold(zero, |sum, part| Ok(sum.sum(&term(part)?)))
 }
 
-/// The series of a part, given those of its own parts; none for what has no series, as the argument of a wave.
+/// The series of a part, given those of its own parts; none for what has no series, as the argument
+/// of a wave.
 fn series_of(
     part: &Expr,
     parts: &[Option<FourierSeries<Polynomials>>],
@@ -116,18 +132,27 @@ fn series_of(
 ) -> Option<FourierSeries<Polynomials>> {
     let constant = |value: Polynomial| FourierSeries::constant(POLYNOMIALS, value);
     if !part.contains(Symbol::new("t")) {
-        return part.to_polynomial(&mut |_| None).ok().flatten().map(constant);
+        return part
+            .to_polynomial(&mut |_| None)
+            .ok()
+            .flatten()
+            .map(constant);
     }
     let mut all = parts.iter().map(Option::as_ref);
     let series = match part.node() {
-        Node::Sum(_) => all.try_fold(FourierSeries::zero(POLYNOMIALS), |sum, part| Some(sum.sum(part?)))?,
+        Node::Sum(_) => all.try_fold(FourierSeries::zero(POLYNOMIALS), |sum, part| {
+            Some(sum.sum(part?))
+        })?,
         Node::Product(number, _) => {
             let number = constant(Polynomial::constant(number.clone()));
             all.try_fold(number, |product, part| Some(product.product(part?)))?
         }
         Node::Power(_, exponent) => {
             let exponent = exponent.as_number().filter(|number| number.is_integer())?;
-            let exponent = exponent.to_integer().to_u32().filter(|power| *power <= HIGHEST_POWER)?;
+            let exponent = exponent
+                .to_integer()
+                .to_u32()
+                .filter(|power| *power <= HIGHEST_POWER)?;
             all.next()??.power(exponent)
         }
         Node::Function(function, arguments) => {
@@ -138,7 +163,9 @@ fn series_of(
             }
             match function {
                 Function::Cos => FourierSeries::cos(POLYNOMIALS, harmonic),
-                Function::Sin if number.is_negative() => FourierSeries::sin(POLYNOMIALS, harmonic).times(-1),
+                Function::Sin if number.is_negative() => {
+                    FourierSeries::sin(POLYNOMIALS, harmonic).times(-1)
+                }
                 Function::Sin => FourierSeries::sin(POLYNOMIALS, harmonic),
                 _ => return None,
             }

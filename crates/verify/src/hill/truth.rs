@@ -7,8 +7,9 @@
 //! Phi(T) of x'' + c x' + (k + mu) x = 0     has the multiplier +1 (n even) or -1 (n odd)
 //! ```
 //!
-//! The determinant says which root belongs to which tongue, for real ones come in their order; the multiplier of the integrated motion
-//! confirms it. Nothing is taken from the derivation but which curve is meant.
+//! The determinant says which root belongs to which tongue, for real ones come in their order; the
+//! multiplier of the integrated motion confirms it. Nothing is taken from the derivation but which
+//! curve is meant.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -35,7 +36,8 @@ const MOST_HARMONICS: usize = 200;
 /// What a value of the determinant is good to, over the square of the frequency.
 const ROUNDING: f64 = 1e-12;
 
-/// How far the multiplier may miss its place, in the equation `1 -+ tr Phi + det Phi = 0` over the size of its terms.
+/// How far the multiplier may miss its place, in the equation `1 -+ tr Phi + det Phi = 0` over the
+/// size of its terms.
 const MULTIPLIER_TOLERANCE: f64 = 1e-6;
 
 /// The imaginary part up to which an eigenvalue counts as real, over the size of the matrix.
@@ -81,10 +83,14 @@ pub enum TruthError {
     #[error("the frequency of the coefficients is {0} there, and must be positive")]
     Frequency(f64),
     /// Coefficients that are no numbers, or too large.
-    #[error("the coefficients have no finite value there, or are too large for {MOST_HARMONICS} harmonics")]
+    #[error(
+        "the coefficients have no finite value there, or are too large for {MOST_HARMONICS} harmonics"
+    )]
     Coefficients,
     /// The determinant and the integrated motion do not agree.
-    #[error("no multiplier of the integrated motion confirms the curve {0}: nothing is judged there")]
+    #[error(
+        "no multiplier of the integrated motion confirms the curve {0}: nothing is judged there"
+    )]
     NotConfirmed(String),
 }
 
@@ -106,7 +112,11 @@ pub enum TruthError {
 /// assert!((judged[1].truth.ok_or("a root")? - 0.795_124).abs() < 1e-6);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn judge(curves: &TransitionCurves, at: &Values, tolerance: f64) -> Result<Vec<JudgedCurve>, TruthError> {
+pub fn judge(
+    curves: &TransitionCurves,
+    at: &Values,
+    tolerance: f64,
+) -> Result<Vec<JudgedCurve>, TruthError> {
     let numbers = at.numbers();
     let unknown = curves.unknown.symbol();
     for name in numbers.keys() {
@@ -182,7 +192,11 @@ pub fn chart(
 }
 
 /// The value that the formula gives: of the frequency, not of its square.
-fn formula(curves: &TransitionCurves, curve: &TransitionCurve, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
+fn formula(
+    curves: &TransitionCurves,
+    curve: &TransitionCurve,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Option<f64> {
     let value_of = |name: Symbol| match name.name() {
         "pi" => Some(std::f64::consts::PI),
         _ => numbers.get(&name).copied(),
@@ -192,7 +206,11 @@ fn formula(curves: &TransitionCurves, curve: &TransitionCurve, numbers: &BTreeMa
         None => 0.0,
         Some(root) => root.evaluate(value_of).ok()?.sqrt(),
     };
-    let value = if curve.upper { middle + root } else { middle - root };
+    let value = if curve.upper {
+        middle + root
+    } else {
+        middle - root
+    };
     letter_of_power(value, curves.unknown.power()).filter(|value| value.is_finite())
 }
 
@@ -206,8 +224,13 @@ fn letter_of_power(value: f64, power: i32) -> Option<f64> {
     }
 }
 
-/// Whether a curve is the upper one of its pair at the numbers: where what is small is negative, two of them change places.
-fn is_upper(curves: &TransitionCurves, curve: &TransitionCurve, numbers: &BTreeMap<Symbol, f64>) -> bool {
+/// Whether a curve is the upper one of its pair at the numbers: where what is small is negative,
+/// two of them change places.
+fn is_upper(
+    curves: &TransitionCurves,
+    curve: &TransitionCurve,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> bool {
     let other = curves
         .curves
         .iter()
@@ -235,7 +258,8 @@ fn true_value(
         Unknown::Stiffness { power, .. } => {
             let slope = curves.stiffness.differentiate(unknown).ok();
             let slope = slope.ok_or(TruthError::Coefficients)?;
-            // The equation without the unknown, where its power is one; else beside the formula, and once more at what comes of it.
+            // The equation without the unknown, where its power is one; else beside the formula,
+            // and once more at what comes of it.
             let mut reference = match power {
                 1 => 0.0,
                 _ => formula(curves, curve, numbers)
@@ -245,7 +269,9 @@ fn true_value(
             let mut value = None;
             for _ in 0..if power == 1 { 1 } else { 3 } {
                 // mu = r*(u - u_0) for the power u of the letter, that of the reference being u_0.
-                let by_letter = slope.evaluate(&with(reference)).map_err(|_| TruthError::Coefficients)?;
+                let by_letter = slope
+                    .evaluate(&with(reference))
+                    .map_err(|_| TruthError::Coefficients)?;
                 let slope = by_letter / (f64::from(power) * reference.powi(power - 1));
                 let above = is_upper(curves, curve, numbers) == (slope > 0.0);
                 let coefficients = Coefficients::of(curves, &with(reference))?;
@@ -254,8 +280,16 @@ fn true_value(
                 let rounding = ROUNDING * coefficients.frequency.powi(2);
                 let mu = mu.is_real.then_some(mu.value);
                 let mu = mu.map(|mu| if mu.abs() < rounding { 0.0 } else { mu / slope });
-                value =
-                    mu.and_then(|mu| letter_of_power(mu + if power == 1 { 0.0 } else { reference.powi(power) }, power));
+                value = mu.and_then(|mu| {
+                    letter_of_power(
+                        mu + if power == 1 {
+                            0.0
+                        } else {
+                            reference.powi(power)
+                        },
+                        power,
+                    )
+                });
                 value = value.filter(|value| value.is_finite());
                 let Some(better) = value else { break };
                 reference = better;
@@ -329,23 +363,36 @@ struct Coefficients {
 impl Coefficients {
     fn of(curves: &TransitionCurves, numbers: &BTreeMap<Symbol, f64>) -> Result<Self, TruthError> {
         let value_of = |name: Symbol| numbers.get(&name).copied();
-        let frequency = curves.frequency.polynomial().evaluate(value_of).unwrap_or(f64::NAN);
+        let frequency = curves
+            .frequency
+            .polynomial()
+            .evaluate(value_of)
+            .unwrap_or(f64::NAN);
         if !(frequency > 0.0 && frequency.is_finite()) {
             return Err(TruthError::Frequency(frequency));
         }
-        let most = curves.curves.iter().map(|curve| curve.tongue).max().unwrap_or(0);
+        let most = curves
+            .curves
+            .iter()
+            .map(|curve| curve.tongue)
+            .max()
+            .unwrap_or(0);
         let time = Symbol::new("t");
         let given = || numbers.iter().filter(|(name, _)| **name != time);
         let names: Vec<Symbol> = given().map(|(name, _)| *name).chain([time]).collect();
-        let compiled =
-            |expression: &Expr| CompiledFunction::new(expression, &names).map_err(|_| TruthError::Coefficients);
+        let compiled = |expression: &Expr| {
+            CompiledFunction::new(expression, &names).map_err(|_| TruthError::Coefficients)
+        };
         let [damping, stiffness] = [compiled(&curves.damping)?, compiled(&curves.stiffness)?];
         let sample = |count: usize| -> Result<Vec<[f64; 2]>, TruthError> {
             let mut point: Vec<f64> = given().map(|(_, value)| *value).chain([0.0]).collect();
             let sample = |index: usize| {
                 *point.last_mut()? = 2.0 * TAU / frequency * index as f64 / count as f64;
                 let sample = [damping.call(&point), stiffness.call(&point)];
-                sample.iter().all(|value| value.is_finite()).then_some(sample)
+                sample
+                    .iter()
+                    .all(|value| value.is_finite())
+                    .then_some(sample)
             };
             let samples: Option<Vec<[f64; 2]>> = (0..count).map(sample).collect();
             samples.ok_or(TruthError::Coefficients)
@@ -371,8 +418,8 @@ impl Coefficients {
         self.samples.iter().map(|sample| sample[1]).sum::<f64>() / self.samples.len() as f64
     }
 
-    /// `mu` of a curve: the eigenvalues of `-(D^2 + c D + k)` on the motions of its period, in order.
-    /// `above` asks for the larger one of its pair.
+    /// `mu` of a curve: the eigenvalues of `-(D^2 + c D + k)` on the motions of its period, in
+    /// order. `above` asks for the larger one of its pair.
     fn eigenvalue(&self, curve: &TransitionCurve, above: bool) -> Result<Eigenvalue, TruthError> {
         let odd = curve.tongue % 2;
         // Normed waves: harmonic, and whether it is a sine.
@@ -388,7 +435,13 @@ impl Coefficients {
             .collect();
         let count = self.samples.len();
         let half = self.frequency / 2.0;
-        let norm = |k: usize| if k == 0 { 1.0 } else { std::f64::consts::SQRT_2 };
+        let norm = |k: usize| {
+            if k == 0 {
+                1.0
+            } else {
+                std::f64::consts::SQRT_2
+            }
+        };
         let round: Vec<(f64, f64)> = (0..count)
             .map(|place| (TAU * place as f64 / count as f64).sin_cos())
             .collect();
@@ -405,7 +458,8 @@ impl Coefficients {
                     (cosine, -rate * sine)
                 };
                 at_samples[(row, column)] = norm(*harmonic) * value;
-                images[(row, column)] = norm(*harmonic) * (rate * rate * value - c * slope - k * value);
+                images[(row, column)] =
+                    norm(*harmonic) * (rate * rate * value - c * slope - k * value);
             }
         }
         let matrix = at_samples.transpose() * images / count as f64;
@@ -415,10 +469,16 @@ impl Coefficients {
         }
         let undamped = self.samples.iter().all(|[c, _]| *c == 0.0);
         let mut values: Vec<(f64, f64)> = if undamped {
-            let eigen = SymmetricEigen::try_new(matrix, f64::EPSILON, 10_000).ok_or(TruthError::Coefficients)?;
-            eigen.eigenvalues.iter().map(|value| (*value, 0.0)).collect()
+            let eigen = SymmetricEigen::try_new(matrix, f64::EPSILON, 10_000)
+                .ok_or(TruthError::Coefficients)?;
+            eigen
+                .eigenvalues
+                .iter()
+                .map(|value| (*value, 0.0))
+                .collect()
         } else {
-            let schur = Schur::try_new(matrix, f64::EPSILON, 10_000).ok_or(TruthError::Coefficients)?;
+            let schur =
+                Schur::try_new(matrix, f64::EPSILON, 10_000).ok_or(TruthError::Coefficients)?;
             schur
                 .complex_eigenvalues()
                 .iter()
@@ -426,7 +486,8 @@ impl Coefficients {
                 .collect()
         };
         values.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // Of both waves, that of tongue 0 stands before the pairs; of one, there is one for every second tongue.
+        // Of both waves, that of tongue 0 stands before the pairs; of one, there is one for every
+        // second tongue.
         let index = match (curve.motion, curve.tongue) {
             (WavesOfMotion::Sines, tongue) => (tongue - 1) / 2,
             (WavesOfMotion::Cosines, tongue) => tongue / 2,
@@ -447,19 +508,28 @@ impl Coefficients {
         curve: &TransitionCurve,
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Option<f64> {
-        let names = [curves.equation.coordinate, curves.equation.coordinate.derivative()];
+        let names = [
+            curves.equation.coordinate,
+            curves.equation.coordinate.derivative(),
+        ];
         let [x, v] = names.map(Expr::from);
         let rate = -(&(&curves.stiffness * &x) + &(&curves.damping * &v));
         let system = System::new(&names, "t".into(), &[v, rate], numbers).ok()?;
         let period = TAU / self.frequency;
         let column = |start: [f64; 2]| {
-            let path = system.solve(0.0, &start, period, &[], &Options::default()).ok()?;
+            let path = system
+                .solve(0.0, &start, period, &[], &Options::default())
+                .ok()?;
             path.at(period)
         };
         let (first, second) = (column([1.0, 0.0])?, column([0.0, 1.0])?);
         let trace = first.first()? + second.get(1)?;
         let determinant = first.first()? * second.get(1)? - first.get(1)? * second.first()?;
-        let sign = if curve.tongue.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let sign = if curve.tongue.is_multiple_of(2) {
+            1.0
+        } else {
+            -1.0
+        };
         Some((1.0 - sign * trace + determinant).abs() / (1.0 + trace.abs() + determinant.abs()))
     }
 }

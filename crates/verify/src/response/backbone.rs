@@ -1,12 +1,14 @@
-//! Backbones: the frequency of the free motion without damping against its amplitude, about every stable place of rest.
+//! Backbones: the frequency of the free motion without damping against its amplitude, about every
+//! stable place of rest.
 //!
 //! ```text
 //! X(theta) = a_0 + a cos theta + a_2 cos(2 theta) + ...,   R(a_0, omega, a_2, ..., a_H) = 0 for the given a
 //! ```
 //!
-//! Resonance bends along it. In: an oscillator without drive and damping, a frequency as an expression in the parameter that varies.
-//! Out: the parameter at which the free motion has the frequency of the drive, for amplitudes from small to large; the same balance as
-//! that of the driven motion, with the frequency as an unknown.
+//! Resonance bends along it. In: an oscillator without drive and damping, a frequency as an
+//! expression in the parameter that varies. Out: the parameter at which the free motion has the
+//! frequency of the drive, for amplitudes from small to large; the same balance as that of the
+//! driven motion, with the frequency as an unknown.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -28,8 +30,8 @@ pub struct BackbonePoint {
 /// Amplitudes of a curve.
 const POINTS: usize = 120;
 
-/// The backbones of an oscillator about its places of rest, as far as they lie in the range: those of mirrored places once. `size` is
-/// the largest amplitude of interest.
+/// The backbones of an oscillator about its places of rest, as far as they lie in the range: those
+/// of mirrored places once. `size` is the largest amplitude of interest.
 ///
 /// # Errors
 /// A force that cannot be differentiated.
@@ -55,7 +57,12 @@ pub fn backbones(
         force,
         ..oscillator.clone()
     };
-    let free = Driven::of_frequency(&free, driven.frequency.clone(), driven.parameter, driven.periods)?;
+    let free = Driven::of_frequency(
+        &free,
+        driven.frequency.clone(),
+        driven.parameter,
+        driven.periods,
+    )?;
     let balance = Balance::new(&free, harmonics);
     let mut curves: Vec<Vec<BackbonePoint>> = Vec::new();
     for place in places_of_rest(&free, range[0], size) {
@@ -91,7 +98,9 @@ pub(super) fn places_of_rest(driven: &Driven, parameter: f64, size: f64) -> Vec<
     let place = |cell: i32| REACH * size * (f64::from(cell) + 0.5) / f64::from(CELLS);
     let mut found: Vec<f64> = (-CELLS..CELLS)
         .filter(|cell| mean_force(place(*cell)) < 0.0 && mean_force(place(cell + 1)) > 0.0)
-        .filter_map(|cell| crate::numeric::ode::root::find_root(mean_force, place(cell), place(cell + 1)).ok())
+        .filter_map(|cell| {
+            crate::numeric::ode::root::find_root(mean_force, place(cell), place(cell + 1)).ok()
+        })
         .collect();
     found.sort_by(|one, other| one.abs().total_cmp(&other.abs()).then(other.total_cmp(one)));
     found.truncate(MOST);
@@ -112,10 +121,15 @@ fn curve(balance: &Balance, place: f64, range: [f64; 2], size: f64) -> Vec<Backb
             }
             None => first_guess(balance, place, amplitude, range),
         };
-        let Some((guess, parameter)) = guess else { continue };
+        let Some((guess, parameter)) = guess else {
+            continue;
+        };
         match solved(balance, guess, parameter) {
             Some((coefficients, parameter)) => {
-                points.push(BackbonePoint { parameter, amplitude });
+                points.push(BackbonePoint {
+                    parameter,
+                    amplitude,
+                });
                 last = Some((coefficients, parameter));
             }
             // A motion that leaves its well has no neighbour beyond.
@@ -128,7 +142,12 @@ fn curve(balance: &Balance, place: f64, range: [f64; 2], size: f64) -> Vec<Backb
 }
 
 /// One harmonic about a place: its frequency by the first harmonic of the force.
-fn first_guess(balance: &Balance, place: f64, amplitude: f64, range: [f64; 2]) -> Option<(DVector<f64>, f64)> {
+fn first_guess(
+    balance: &Balance,
+    place: f64,
+    amplitude: f64,
+    range: [f64; 2],
+) -> Option<(DVector<f64>, f64)> {
     const PHASES: u32 = 64;
     let driven = balance.driven;
     let mut sum = 0.0;
@@ -156,7 +175,11 @@ fn first_guess(balance: &Balance, place: f64, amplitude: f64, range: [f64; 2]) -
 }
 
 /// Newton's method for the mean, the parameter and the higher cosines, the first being given.
-fn solved(balance: &Balance, mut coefficients: DVector<f64>, mut parameter: f64) -> Option<(DVector<f64>, f64)> {
+fn solved(
+    balance: &Balance,
+    mut coefficients: DVector<f64>,
+    mut parameter: f64,
+) -> Option<(DVector<f64>, f64)> {
     const MOST: usize = 30;
     let count = balance.harmonics + 1;
     // The cosine of a harmonic: its place among the coefficients.

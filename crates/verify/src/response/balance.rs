@@ -1,21 +1,25 @@
-//! Harmonic balance with many harmonics: the equation of a periodic motion as equations for its Fourier coefficients.
+//! Harmonic balance with many harmonics: the equation of a periodic motion as equations for its
+//! Fourier coefficients.
 //!
 //! ```text
 //! X(theta) = a_0 + sum_(k = 1..H) a_k cos(k theta) + b_k sin(k theta),   u = (a_0, a_1, b_1, ..., a_H, b_H)
 //! R(u, p) = the same coefficients of omega^2 X'' + f(X, omega X', theta; p)
 //! ```
 //!
-//! The force is sampled at equal steps of the phase and taken apart into its harmonics again: alternating time and frequency (T. M.
-//! Cameron and J. H. Griffin, *J. Appl. Mech.* 56 (1989) 149; G. von Groll and D. J. Ewins, *J. Sound Vib.* 241 (2001) 223; M. Krack
-//! and J. Gross, *Harmonic Balance for Nonlinear Vibration Problems*, Springer 2019). The Jacobian comes from the harmonics of the
-//! derivatives of the force at the same samples. In: coefficients and a parameter. Out: residual and derivatives, in the units of the
-//! equation.
+//! The force is sampled at equal steps of the phase and taken apart into its harmonics again:
+//! alternating time and frequency (T. M. Cameron and J. H. Griffin, *J. Appl. Mech.* 56 (1989) 149;
+//! G. von Groll and D. J. Ewins, *J. Sound Vib.* 241 (2001) 223; M. Krack and J. Gross, *Harmonic
+//! Balance for Nonlinear Vibration Problems*, Springer 2019). The Jacobian comes from the harmonics
+//! of the derivatives of the force at the same samples. In: coefficients and a parameter. Out:
+//! residual and derivatives, in the units of the equation.
 //!
-//! At a jump of the force with the velocity, such as dry friction, samples would not tell where it is: the phases at which the velocity
-//! passes it are located, and what is more above it is integrated between them.
+//! At a jump of the force with the velocity, such as dry friction, samples would not tell where it
+//! is: the phases at which the velocity passes it are located, and what is more above it is
+//! integrated between them.
 //!
-//! Where nothing drives the motion its frequency is an unknown, and when it begins is free: it begins where the first sine is zero,
-//! and the frequency takes the place of b_1 among the unknowns.
+//! Where nothing drives the motion its frequency is an unknown, and when it begins is free: it
+//! begins where the first sine is zero, and the frequency takes the place of b_1 among the
+//! unknowns.
 
 use std::cell::Cell;
 
@@ -31,7 +35,8 @@ use crate::numeric::ode::root::find_root;
 /// Samples for each harmonic, and of all of them: forces of the seventh power are exact.
 const SMOOTH: [usize; 2] = [8, 32];
 
-/// Likewise where the force has corners: with fewer the branch would waver as a corner moves from sample to sample.
+/// Likewise where the force has corners: with fewer the branch would waver as a corner moves from
+/// sample to sample.
 const CORNERED: [usize; 2] = [32, 512];
 
 /// The equations for so many harmonics.
@@ -58,7 +63,8 @@ pub struct Linearised {
     pub scale: f64,
 }
 
-/// A part of the force and of its derivatives by position, velocity, parameter and frequency, at a phase.
+/// A part of the force and of its derivatives by position, velocity, parameter and frequency, at a
+/// phase.
 struct Part {
     phase: f64,
     values: [f64; 5],
@@ -109,7 +115,9 @@ impl<'a> Balance<'a> {
         let size = coefficients.len();
         match self.frequency_place() {
             None => coefficients.rows(1, size - 1).norm(),
-            Some(place) => coefficients[1].hypot(coefficients.rows(place + 1, size - place - 1).norm()),
+            Some(place) => {
+                coefficients[1].hypot(coefficients.rows(place + 1, size - place - 1).norm())
+            }
         }
     }
 
@@ -123,7 +131,8 @@ impl<'a> Balance<'a> {
         sizes.fold(0.0, f64::hypot)
     }
 
-    /// The unknowns of a motion of this frequency that is known at any number of equal steps of a period.
+    /// The unknowns of a motion of this frequency that is known at any number of equal steps of a
+    /// period.
     pub fn unknowns_of(&self, positions: &[f64], frequency: f64) -> DVector<f64> {
         let coefficients = self.coefficients_of(positions);
         if !self.driven.self_excited {
@@ -160,16 +169,19 @@ impl<'a> Balance<'a> {
             .collect()
     }
 
-    /// The coefficients of a motion that is known at any number of equal steps of a period, twice as many as harmonics at least.
+    /// The coefficients of a motion that is known at any number of equal steps of a period, twice
+    /// as many as harmonics at least.
     pub fn coefficients_of(&self, positions: &[f64]) -> DVector<f64> {
         let count = positions.len().max(1) as f64;
         let harmonic = |harmonic: usize| {
             let wave = |(index, value): (usize, &f64)| {
-                let (sine, cosine) = (std::f64::consts::TAU * (harmonic * index) as f64 / count).sin_cos();
+                let (sine, cosine) =
+                    (std::f64::consts::TAU * (harmonic * index) as f64 / count).sin_cos();
                 (value * cosine, value * sine)
             };
             let sums = positions.iter().enumerate().map(wave);
-            let (cosines, sines) = sums.fold((0.0, 0.0), |sum, next| (sum.0 + next.0, sum.1 + next.1));
+            let (cosines, sines) =
+                sums.fold((0.0, 0.0), |sum, next| (sum.0 + next.0, sum.1 + next.1));
             (2.0 * cosines / count, 2.0 * sines / count)
         };
         let (cosines, sines) = (0..=self.harmonics).map(harmonic).unzip();
@@ -218,7 +230,11 @@ impl<'a> Balance<'a> {
             slopes[2].push(by_parameter + omega_slope * by_frequency);
             slopes[3].push(by_frequency);
         }
-        let sum: Vec<f64> = inertia.iter().zip(&force).map(|(one, other)| one + other).collect();
+        let sum: Vec<f64> = inertia
+            .iter()
+            .zip(&force)
+            .map(|(one, other)| one + other)
+            .collect();
         let added = above.iter().flat_map(|part| part.values.iter());
         if !sum
             .iter()
@@ -228,7 +244,11 @@ impl<'a> Balance<'a> {
         {
             return None;
         }
-        let size = |values: &[f64]| values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        let size = |values: &[f64]| {
+            values
+                .iter()
+                .fold(0.0_f64, |largest, value| largest.max(value.abs()))
+        };
         let all = |values: &[f64], which: usize, count: usize| {
             let mut harmonics = self.transform.harmonics(values, count);
             for part in &above {
@@ -236,9 +256,11 @@ impl<'a> Balance<'a> {
             }
             harmonics
         };
-        let [stiffness, damping] = [0, 1].map(|index| all(&slopes[index], index + 1, 2 * self.harmonics));
+        let [stiffness, damping] =
+            [0, 1].map(|index| all(&slopes[index], index + 1, 2 * self.harmonics));
         let mut jacobian = self.jacobian(&stiffness, &damping, omega);
-        let vector = |values: &[f64], which: usize| self.in_order(&all(values, which, self.harmonics));
+        let vector =
+            |values: &[f64], which: usize| self.in_order(&all(values, which, self.harmonics));
         if let Some(place) = self.frequency_place() {
             jacobian.set_column(place, &vector(&slopes[3], 4));
         }
@@ -250,10 +272,17 @@ impl<'a> Balance<'a> {
         })
     }
 
-    /// What the force and its derivatives have more above a jump than below it, as parts at phases of the motion: an integral by Gauss
-    /// and Legendre between the phases at which the velocity passes the jump, and these phases themselves, at which the derivatives by
-    /// the velocity and by what moves the jump are Dirac's.
-    fn above(&self, coefficients: &DVector<f64>, parameter: f64, omega: f64, motion: &[[f64; 3]]) -> Vec<Part> {
+    /// What the force and its derivatives have more above a jump than below it, as parts at phases
+    /// of the motion: an integral by Gauss and Legendre between the phases at which the velocity
+    /// passes the jump, and these phases themselves, at which the derivatives by the velocity and
+    /// by what moves the jump are Dirac's.
+    fn above(
+        &self,
+        coefficients: &DVector<f64>,
+        parameter: f64,
+        omega: f64,
+        motion: &[[f64; 3]],
+    ) -> Vec<Part> {
         let driven = self.driven;
         let Some(speed) = driven.jump_speed(parameter) else {
             return vec![];
@@ -278,7 +307,8 @@ impl<'a> Balance<'a> {
             let turn = omega * self.curvature(coefficients, *phase);
             let by_velocity = (above - below) / turn.abs();
             let by_frequency = by_velocity * here[1] / omega;
-            let by_parameter = omega_slope * by_frequency - by_velocity * driven.jump_speed_slope(parameter);
+            let by_parameter =
+                omega_slope * by_frequency - by_velocity * driven.jump_speed_slope(parameter);
             parts.push(Part {
                 phase: *phase,
                 values: [0.0, 0.0, by_velocity, by_parameter, by_frequency],
@@ -293,7 +323,12 @@ impl<'a> Balance<'a> {
         for span in phases.chunks_exact(2) {
             let (from, to) = (
                 span[0],
-                span[1] + if span[1] < span[0] { std::f64::consts::TAU } else { 0.0 },
+                span[1]
+                    + if span[1] < span[0] {
+                        std::f64::consts::TAU
+                    } else {
+                        0.0
+                    },
             );
             let panels = ((to - from) / std::f64::consts::TAU * (self.harmonics + 1) as f64).ceil();
             let width = (to - from) / panels;
@@ -305,7 +340,8 @@ impl<'a> Balance<'a> {
                     let [by_position, by_velocity, by_parameter] =
                         std::array::from_fn(|index| weight * (above[index] - below[index]));
                     let by_frequency = by_velocity * here[1] / omega;
-                    let force = weight * (driven.force_on(&here, &[1.0]) - driven.force_on(&here, &[-1.0]));
+                    let force =
+                        weight * (driven.force_on(&here, &[1.0]) - driven.force_on(&here, &[-1.0]));
                     parts.push(Part {
                         phase,
                         values: [
@@ -335,7 +371,8 @@ impl<'a> Balance<'a> {
 
     /// dR/du from the derivatives of the force at the samples.
     fn jacobian(&self, stiffness: &Harmonics, damping: &Harmonics, omega: f64) -> DMatrix<f64> {
-        // Coefficients (k; cos or sin) of s(theta) times the wave (l; cos or sin), s having these harmonics.
+        // Coefficients (k; cos or sin) of s(theta) times the wave (l; cos or sin), s having these
+        // harmonics.
         let coupled = |s: &Harmonics, (k, k_sine): (isize, bool), (l, l_sine): (isize, bool)| {
             0.5 * match (k_sine, l_sine) {
                 (false, false) => s.cosine(k - l) + s.cosine(k + l),
@@ -345,12 +382,17 @@ impl<'a> Balance<'a> {
             }
         };
         DMatrix::from_fn(self.size(), self.size(), |row, column| {
-            let place = |index: usize| (index.div_ceil(2) as isize, index > 0 && index.is_multiple_of(2));
+            let place = |index: usize| {
+                (
+                    index.div_ceil(2) as isize,
+                    index > 0 && index.is_multiple_of(2),
+                )
+            };
             let ((k, k_sine), (l, l_sine)) = (place(row), place(column));
             // A cosine turns into minus a sine, a sine into a cosine.
             let turned = if l_sine { 1.0 } else { -1.0 } * omega * l as f64;
-            let mut value =
-                coupled(stiffness, (k, k_sine), (l, l_sine)) + turned * coupled(damping, (k, k_sine), (l, !l_sine));
+            let mut value = coupled(stiffness, (k, k_sine), (l, l_sine))
+                + turned * coupled(damping, (k, k_sine), (l, !l_sine));
             if k == 0 {
                 value *= 0.5;
             }
@@ -378,8 +420,10 @@ impl<'a> Balance<'a> {
                 None => step.norm() <= CONVERGED * coefficients.norm(),
                 // A frequency is measured in itself.
                 Some(place) => {
-                    let [size, moved] = [coefficients, step].map(|vector| self.extent(vector).hypot(vector[0]));
-                    moved <= CONVERGED * size && step[place].abs() <= CONVERGED * coefficients[place].abs()
+                    let [size, moved] =
+                        [coefficients, step].map(|vector| self.extent(vector).hypot(vector[0]));
+                    moved <= CONVERGED * size
+                        && step[place].abs() <= CONVERGED * coefficients[place].abs()
                 }
             };
             match settled || vanishes.get() {

@@ -9,9 +9,10 @@
 //! centre                   a crossing with motions of every amplitude at one value of the parameter
 //! ```
 //!
-//! (A. H. Nayfeh and B. Balachandran, *Applied Nonlinear Dynamics*, chapter 3; Y. A. Kuznetsov, *Elements of Applied Bifurcation
-//! Theory*, Springer 2004.) In: two neighbouring points of a branch with what is known there. Out: the point between them, by the root
-//! of the quantity that changes its sign.
+//! (A. H. Nayfeh and B. Balachandran, *Applied Nonlinear Dynamics*, chapter 3; Y. A.
+//! Kuznetsov, *Elements of Applied Bifurcation Theory*, Springer 2004.) In: two neighbouring points of a
+//! branch with what is known there. Out: the point between them, by the root of the quantity that
+//! changes its sign.
 
 use super::balance::Balance;
 use super::continuation::Node;
@@ -60,14 +61,15 @@ fn test(kind: BifurcationKind, node: &Node, floquet: Option<Floquet>) -> Option<
         BifurcationKind::BranchPoint => node.orientation,
         BifurcationKind::PeriodDoubling => 1.0 + trace + determinant,
         BifurcationKind::NeimarkSacker => determinant - 1.0,
-        // One lies at the end of a branch, where continuation finds it; the other is a crossing of branches.
+        // One lies at the end of a branch, where continuation finds it; the other is a crossing of
+        // branches.
         BifurcationKind::Hopf | BifurcationKind::Centre => f64::NAN,
     };
     value.is_finite().then_some(value)
 }
 
-/// The bifurcations between two neighbouring points, each at its place on the branch. `between` finds the point at a part of the way,
-/// `floquet` the multipliers of a point.
+/// The bifurcations between two neighbouring points, each at its place on the branch. `between`
+/// finds the point at a part of the way, `floquet` the multipliers of a point.
 pub fn between(
     balance: &Balance,
     [from, to]: [(&Node, Option<Floquet>); 2],
@@ -84,7 +86,8 @@ pub fn between(
         false => &[BranchPoint, Fold, PeriodDoubling, NeimarkSacker],
     };
     for &kind in kinds {
-        let (Some(before), Some(after)) = (test(kind, from.0, from.1), test(kind, to.0, to.1)) else {
+        let (Some(before), Some(after)) = (test(kind, from.0, from.1), test(kind, to.0, to.1))
+        else {
             continue;
         };
         if before * after >= 0.0 {
@@ -112,7 +115,8 @@ pub fn between(
             let multipliers = node
                 .filter(|_| matches!(kind, PeriodDoubling | NeimarkSacker))
                 .and_then(floquet);
-            node.and_then(|node| test(kind, node, multipliers)).unwrap_or(f64::NAN)
+            node.and_then(|node| test(kind, node, multipliers))
+                .unwrap_or(f64::NAN)
         };
         let part = match kind {
             // A sign alone has no root but by halving.
@@ -121,9 +125,16 @@ pub fn between(
         };
         // Where branches cross Newton's method may not settle: beside it is near enough.
         const BESIDE: [f64; 5] = [0.0, 1e-6, -1e-6, 1e-3, -1e-3];
-        let beside = |part: f64| BESIDE.iter().find_map(|aside| between((part + aside).clamp(0.0, 1.0)));
-        let Some(node) = part.and_then(beside) else { continue };
-        // A branch that is born at a crossing turns back there without a fold of its own, and its turn is easier to find.
+        let beside = |part: f64| {
+            BESIDE
+                .iter()
+                .find_map(|aside| between((part + aside).clamp(0.0, 1.0)))
+        };
+        let Some(node) = part.and_then(beside) else {
+            continue;
+        };
+        // A branch that is born at a crossing turns back there without a fold of its own, and its
+        // turn is easier to find.
         let crossing = found
             .iter()
             .position(|(other, _)| kind == Fold && *other == BranchPoint);

@@ -1,4 +1,5 @@
-//! The branches, each once: not begun later, not its mirror image, not the other half of one that came back.
+//! The branches, each once: not begun later, not its mirror image, not the other half of one that
+//! came back.
 
 use nalgebra::DVector;
 
@@ -35,7 +36,9 @@ impl Asked<'_> {
                     .map(|path| largest(balance, path))
                     .fold(size.max(balance.extent(&found)), f64::max),
             );
-            if walk.is_cut_off(balance, &found) || self.was_known(balance, &mut paths, &found, seed.parameter) {
+            if walk.is_cut_off(balance, &found)
+                || self.was_known(balance, &mut paths, &found, seed.parameter)
+            {
                 continue;
             }
             if let Some(path) = walk.through(balance, &found, seed.parameter) {
@@ -48,8 +51,8 @@ impl Asked<'_> {
         paths
     }
 
-    /// Marks a branch whose mirror image nobody has come by: where the image of one of its motions is a motion of the same equation and
-    /// on no branch itself.
+    /// Marks a branch whose mirror image nobody has come by: where the image of one of its motions
+    /// is a motion of the same equation and on no branch itself.
     fn mark_mirrored(&self, balance: &Balance, paths: &mut [Path], index: usize) {
         const SAME: f64 = 1e-6;
         let nodes = &paths[index].nodes;
@@ -65,7 +68,13 @@ impl Asked<'_> {
     }
 
     /// Whether a motion is known; where it is a mirror image, its branch is marked.
-    fn was_known(&self, balance: &Balance, paths: &mut [Path], coefficients: &DVector<f64>, parameter: f64) -> bool {
+    fn was_known(
+        &self,
+        balance: &Balance,
+        paths: &mut [Path],
+        coefficients: &DVector<f64>,
+        parameter: f64,
+    ) -> bool {
         let known = self.known(balance, paths, coefficients, parameter);
         if let Some(Known::Mirrored(index)) = known {
             paths[index].mirrored = true;
@@ -79,21 +88,27 @@ impl Asked<'_> {
             return;
         }
         self.cut_at_crossing(balance, &mut path);
-        let [first, middle, last] = [0, path.nodes.len() / 2, path.nodes.len() - 1].map(|index| &path.nodes[index]);
+        let [first, middle, last] =
+            [0, path.nodes.len() / 2, path.nodes.len() - 1].map(|index| &path.nodes[index]);
         let ends = match path.ends[0] {
             BranchEnd::Closed => vec![middle],
             _ if path.ends[1] == BranchEnd::Crossing => vec![first],
             _ => vec![first, last],
         };
         let known = |node: &Node| self.known(balance, paths, &node.coefficients, node.parameter);
-        match ends.into_iter().find_map(known).filter(|_| known(middle).is_some()) {
+        match ends
+            .into_iter()
+            .find_map(known)
+            .filter(|_| known(middle).is_some())
+        {
             Some(Known::Itself) => {}
             Some(Known::Mirrored(index)) => paths[index].mirrored = true,
             None => paths.push(path),
         }
     }
 
-    /// A branch that is born where another one is crossed comes back from there as its own image: that half is left out.
+    /// A branch that is born where another one is crossed comes back from there as its own image:
+    /// that half is left out.
     fn cut_at_crossing(&self, balance: &Balance, path: &mut Path) {
         let turns = |pair: &[Node]| pair[0].orientation != pair[1].orientation;
         let Some(index) = path.nodes.windows(2).position(turns) else {
@@ -105,7 +120,14 @@ impl Asked<'_> {
             ends: path.ends,
             mirrored: false,
         };
-        let image = |node: &Node| self.known(balance, std::slice::from_ref(&half), &node.coefficients, node.parameter);
+        let image = |node: &Node| {
+            self.known(
+                balance,
+                std::slice::from_ref(&half),
+                &node.coefficients,
+                node.parameter,
+            )
+        };
         // The middle of that half, which is surely no longer than the first.
         if let Some(known) = behind.get(behind.len() / 2).and_then(image) {
             path.mirrored = matches!(known, Known::Mirrored(_));
@@ -115,23 +137,39 @@ impl Asked<'_> {
         }
     }
 
-    /// Whether a motion lies on one of these branches, or is one of theirs begun a period of the drive later, or a mirror image.
-    fn known(&self, balance: &Balance, paths: &[Path], coefficients: &DVector<f64>, parameter: f64) -> Option<Known> {
+    /// Whether a motion lies on one of these branches, or is one of theirs begun a period of the
+    /// drive later, or a mirror image.
+    fn known(
+        &self,
+        balance: &Balance,
+        paths: &[Path],
+        coefficients: &DVector<f64>,
+        parameter: f64,
+    ) -> Option<Known> {
         /// The part of a motion by which a guess between two points may be off.
         const NEAR: f64 = 0.2;
         const SAME: f64 = 1e-5;
-        let size = balance.extent(coefficients).max(1e-3 * coefficients[0].abs());
+        let size = balance
+            .extent(coefficients)
+            .max(1e-3 * coefficients[0].abs());
         let period = std::f64::consts::TAU / self.question.periods as f64;
         let shifts = (0..self.question.periods).map(|periods| period * periods as f64);
-        let shifted: Vec<DVector<f64>> = shifts.clone().map(|shift| later(coefficients, shift)).collect();
-        let mirrored: Vec<DVector<f64>> = shifts.map(|shift| -later(coefficients, shift + 0.5 * period)).collect();
-        // Places between which the force does not change, such as those a turn of a pendulum apart, are one.
+        let shifted: Vec<DVector<f64>> = shifts
+            .clone()
+            .map(|shift| later(coefficients, shift))
+            .collect();
+        let mirrored: Vec<DVector<f64>> = shifts
+            .map(|shift| -later(coefficients, shift + 0.5 * period))
+            .collect();
+        // Places between which the force does not change, such as those a turn of a pendulum apart,
+        // are one.
         let is_one = |motion: &DVector<f64>, of: &[DVector<f64>], within: f64, anywhere: bool| {
             let near = |shifted: &DVector<f64>| {
                 let apart = motion - shifted;
                 let (mean, waves) = (apart[0], apart.rows(1, apart.len() - 1).norm());
                 let allowed = within * size.max(balance.extent(motion));
-                waves <= allowed && (anywhere || mean.abs() <= allowed || self.repeats_after(mean, parameter))
+                waves <= allowed
+                    && (anywhere || mean.abs() <= allowed || self.repeats_after(mean, parameter))
             };
             of.iter().any(near)
         };
@@ -142,7 +180,8 @@ impl Asked<'_> {
             };
             let guess = &one.coefficients + (&other.coefficients - &one.coefficients) * part;
             let solved = || balance.solve(&guess, parameter);
-            is_one(&guess, of, NEAR, true) && solved().is_some_and(|found| is_one(&found, of, SAME, false))
+            is_one(&guess, of, NEAR, true)
+                && solved().is_some_and(|found| is_one(&found, of, SAME, false))
         };
         let on = |of: &[DVector<f64>]| {
             let holds = |path: &Path| path.nodes.windows(2).any(|pair| between(pair, of));
@@ -163,14 +202,23 @@ impl Asked<'_> {
         })
     }
 
-    /// Follows the branch that crosses another one here; whether that has motions of every amplitude at this one value of the parameter.
-    pub(super) fn follow_crossing(&self, balance: &Balance, walk: &Walk, at: &Node, paths: &mut Vec<Path>) -> bool {
+    /// Follows the branch that crosses another one here; whether that has motions of every
+    /// amplitude at this one value of the parameter.
+    pub(super) fn follow_crossing(
+        &self,
+        balance: &Balance,
+        walk: &Walk,
+        at: &Node,
+        paths: &mut Vec<Path>,
+    ) -> bool {
         let mut is_centre = false;
         for node in walk.crossing(balance, at) {
             if self.was_known(balance, paths, &node.coefficients, node.parameter) {
                 continue;
             }
-            if let Some(path) = walk.along(balance, &node.coefficients, node.parameter, &node.tangent) {
+            if let Some(path) =
+                walk.along(balance, &node.coefficients, node.parameter, &node.tangent)
+            {
                 is_centre |= self.is_centre(&path);
                 self.keep(balance, path, paths);
             }
@@ -178,7 +226,8 @@ impl Asked<'_> {
         is_centre
     }
 
-    /// Whether these are motions at one value of the parameter, which need neither drive nor damping.
+    /// Whether these are motions at one value of the parameter, which need neither drive nor
+    /// damping.
     fn is_centre(&self, path: &Path) -> bool {
         /// Of the range.
         const NOTHING: f64 = 1e-9;

@@ -4,11 +4,12 @@
 //! R(u, p) = 0,   w_u^2 u'.(u - u_0) + w_p^2 p' (p - p_0) = s        [R_u R_p; w_u^2 u'^T  w_p^2 p'] [du; dp] = -[R; 0]
 //! ```
 //!
-//! From a point a step along the tangent is a guess, and Newton's method on the bordered equations, at right angles to the tangent,
-//! brings it back to the branch (H. B. Keller, in *Applications of Bifurcation Theory*, Academic Press 1977; R. Seydel, *Practical
-//! Bifurcation and Stability Analysis*, Springer 2010, chapter 4). Coefficients are measured in the size of the motion where the step
-//! begins, the parameter in the length of its range. In: a balance, a point on the branch. Out: the points of the whole branch within
-//! the range, both ways, with their tangents.
+//! From a point a step along the tangent is a guess, and Newton's method on the bordered equations,
+//! at right angles to the tangent, brings it back to the branch (H. B. Keller, in *Applications of
+//! Bifurcation Theory*, Academic Press 1977; R. Seydel, *Practical Bifurcation and Stability
+//! Analysis*, Springer 2010, chapter 4). Coefficients are measured in the size of the motion where
+//! the step begins, the parameter in the length of its range. In: a balance, a point on the branch.
+//! Out: the points of the whole branch within the range, both ways, with their tangents.
 
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
@@ -26,14 +27,16 @@ pub struct Node {
     pub parameter: f64,
     /// The direction of the branch, of length one in the weights of the step to here.
     pub tangent: DVector<f64>,
-    /// The sign of the determinant of the bordered equations: it changes where branches cross, and not at a fold.
+    /// The sign of the determinant of the bordered equations: it changes where branches cross, and
+    /// not at a fold.
     pub orientation: f64,
     /// A motion that is known by shooting, not by the balance: it sticks, or has.
     pub truth: Option<TrueMotion>,
 }
 
 impl Node {
-    /// Where a parameter lies on the way to the next node, from zero to one; `None` where it does not.
+    /// Where a parameter lies on the way to the next node, from zero to one; `None` where it does
+    /// not.
     pub fn part_of_way(&self, next: &Self, parameter: f64) -> Option<f64> {
         let way = next.parameter - self.parameter;
         let part = if way == 0.0 {
@@ -79,7 +82,8 @@ pub enum BranchEnd {
     Held,
     /// Its amplitude has come to zero: a self-excited motion is born from rest there.
     Rest,
-    /// Its period grows without bound: a self-excited motion comes near a place of rest that it cannot pass.
+    /// Its period grows without bound: a self-excited motion comes near a place of rest that it
+    /// cannot pass.
     Slow,
     /// Somebody asked for it.
     Interrupted,
@@ -148,7 +152,9 @@ impl Weights {
     /// The last row of the bordered equations: a product with it is one with this direction.
     fn row(&self, direction: &DVector<f64>) -> DVector<f64> {
         let size = direction.len() - 1;
-        DVector::from_fn(size + 1, |index, _| self.of(index, size).powi(2) * direction[index])
+        DVector::from_fn(size + 1, |index, _| {
+            self.of(index, size).powi(2) * direction[index]
+        })
     }
 }
 
@@ -167,10 +173,17 @@ fn bordered(linear: &Linearised, row: &DVector<f64>) -> DMatrix<f64> {
     })
 }
 
-/// The size of the largest motion of these, that of one in the middle where they grow without bound: what is measured in an enormous size
-/// passes over a resonance as if it were nothing.
-pub(super) fn largest<const ENDS: usize>(balance: &Balance, nodes: &[Node], ends: [BranchEnd; ENDS]) -> f64 {
-    let mut sizes: Vec<f64> = nodes.iter().map(|node| balance.extent(&node.coefficients)).collect();
+/// The size of the largest motion of these, that of one in the middle where they grow without
+/// bound: what is measured in an enormous size passes over a resonance as if it were nothing.
+pub(super) fn largest<const ENDS: usize>(
+    balance: &Balance,
+    nodes: &[Node],
+    ends: [BranchEnd; ENDS],
+) -> f64 {
+    let mut sizes: Vec<f64> = nodes
+        .iter()
+        .map(|node| balance.extent(&node.coefficients))
+        .collect();
     sizes.sort_by(f64::total_cmp);
     let place = match ends.contains(&BranchEnd::Unbounded) {
         true => sizes.len() / 2,
@@ -183,7 +196,9 @@ impl Walk {
     fn weights(&self, balance: &Balance, coefficients: &DVector<f64>) -> Weights {
         /// The smallest size that counts, in parts of the largest.
         const SMALLEST: f64 = 0.1;
-        let own = balance.extent(coefficients).max(1e-3 * coefficients[0].abs());
+        let own = balance
+            .extent(coefficients)
+            .max(1e-3 * coefficients[0].abs());
         let size = own.max(SMALLEST * self.size);
         Weights {
             coefficients: if size > 0.0 { 1.0 / size } else { 1.0 },
@@ -194,7 +209,8 @@ impl Walk {
         }
     }
 
-    /// Newton's method at right angles to a direction: the point, its tangent turned as `direction`, and the number of iterations.
+    /// Newton's method at right angles to a direction: the point, its tangent turned as
+    /// `direction`, and the number of iterations.
     fn corrected(
         &self,
         balance: &Balance,
@@ -247,7 +263,12 @@ impl Walk {
     }
 
     /// The whole branch through a motion at a parameter.
-    pub fn through(&self, balance: &Balance, coefficients: &DVector<f64>, parameter: f64) -> Option<Path> {
+    pub fn through(
+        &self,
+        balance: &Balance,
+        coefficients: &DVector<f64>,
+        parameter: f64,
+    ) -> Option<Path> {
         let mut direction = DVector::zeros(balance.size() + 1);
         direction[balance.size()] = self.range[1] - self.range[0];
         self.along(balance, coefficients, parameter, &direction)
@@ -279,7 +300,11 @@ impl Walk {
             });
         }
         let largest = largest(balance, &nodes, [end]).max(self.size);
-        let (before, first_end) = Self { size: largest, ..*self }.follow(balance, backward);
+        let (before, first_end) = Self {
+            size: largest,
+            ..*self
+        }
+        .follow(balance, backward);
         let turned = before.into_iter().skip(1).map(|mut node| {
             node.tangent *= -1.0;
             node.orientation *= -1.0;
@@ -295,9 +320,15 @@ impl Walk {
         })
     }
 
-    /// The motions by which a branch that ends with the range comes back to it, where it is followed beyond as far as `wide`: a
-    /// resonance whose peak lies outside has two of its branches inside, and one of them may be hard to come by otherwise.
-    pub(super) fn returns(&self, balance: &Balance, path: &Path, wide: [f64; 2]) -> Vec<(DVector<f64>, f64)> {
+    /// The motions by which a branch that ends with the range comes back to it, where it is
+    /// followed beyond as far as `wide`: a resonance whose peak lies outside has two of its
+    /// branches inside, and one of them may be hard to come by otherwise.
+    pub(super) fn returns(
+        &self,
+        balance: &Balance,
+        path: &Path,
+        wide: [f64; 2],
+    ) -> Vec<(DVector<f64>, f64)> {
         /// Points beyond the range.
         const MOST: usize = 200;
         let outward = |(node, turn): (&Node, f64)| Node {
@@ -343,21 +374,24 @@ impl Walk {
     pub(super) fn is_cut_off(&self, balance: &Balance, coefficients: &DVector<f64>) -> bool {
         /// Of the size of the motion: of one that is resolved the last quarter has next to nothing.
         const LARGEST: f64 = 0.1;
-        self.resolved && balance.last_harmonics(coefficients) > LARGEST * balance.extent(coefficients)
+        self.resolved
+            && balance.last_harmonics(coefficients) > LARGEST * balance.extent(coefficients)
     }
 
     /// The points from one on in the direction of its tangent.
     fn follow(&self, balance: &Balance, start: Node) -> (Vec<Node>, BranchEnd) {
         const FIRST: f64 = 0.2;
         const SHORTEST: f64 = 1e-9;
-        /// Short enough to tell where the harmonics cease to suffice, or where an end of the range is near.
+        /// Short enough to tell where the harmonics cease to suffice, or where an end of the range
+        /// is near.
         const SHORT: f64 = 1e-4;
         const FEW: usize = 3;
         const MANY: usize = 6;
         /// Cosine of the angle between tangents beyond which a step was too long.
         const SHARPEST: f64 = 0.94;
         const ENORMOUS: f64 = 1e4;
-        /// Of the highest frequency of a branch: what is slower is no more than a sum of waves can say.
+        /// Of the highest frequency of a branch: what is slower is no more than a sum of waves can
+        /// say.
         const SLOW: f64 = 0.05;
         let [low, high] = self.range;
         let bound = ENORMOUS * balance.extent(&start.coefficients).max(self.ordinary);
@@ -376,11 +410,14 @@ impl Walk {
             let tangent = &here.tangent / weights.norm(&here.tangent);
             let start = joined(&here.coefficients, here.parameter);
             let guess = &start + &tangent * step;
-            let found = self.corrected(balance, &guess, &tangent, weights).filter(|(node, _)| {
-                let next = &node.tangent / weights.norm(&node.tangent);
-                let moved = weights.norm(&(joined(&node.coefficients, node.parameter) - &start));
-                weights.dot(&next, &tangent) > SHARPEST && moved < 1.5 * step
-            });
+            let found = self
+                .corrected(balance, &guess, &tangent, weights)
+                .filter(|(node, _)| {
+                    let next = &node.tangent / weights.norm(&node.tangent);
+                    let moved =
+                        weights.norm(&(joined(&node.coefficients, node.parameter) - &start));
+                    weights.dot(&next, &tangent) > SHARPEST && moved < 1.5 * step
+                });
             let cut_off = found
                 .as_ref()
                 .is_some_and(|(node, _)| self.is_cut_off(balance, &node.coefficients));
@@ -402,7 +439,8 @@ impl Walk {
                     nodes.push(last);
                     return (nodes, BranchEnd::Range);
                 }
-                // Where the end of the range is a resonance of a harmonic there is no motion, or more than one: near it is near enough.
+                // Where the end of the range is a resonance of a harmonic there is no motion, or
+                // more than one: near it is near enough.
                 step *= 0.5;
                 if step < SHORT {
                     return (nodes, BranchEnd::Range);
@@ -441,8 +479,14 @@ impl Walk {
         }
     }
 
-    /// These points, and the motion of amplitude zero behind them where the branch ends in one near this parameter.
-    fn ended_at_rest(&self, balance: &Balance, mut nodes: Vec<Node>, near: f64) -> (Vec<Node>, BranchEnd) {
+    /// These points, and the motion of amplitude zero behind them where the branch ends in one near
+    /// this parameter.
+    fn ended_at_rest(
+        &self,
+        balance: &Balance,
+        mut nodes: Vec<Node>,
+        near: f64,
+    ) -> (Vec<Node>, BranchEnd) {
         let Some(rest) = self.rest_beside(balance, &nodes[nodes.len() - 1], near) else {
             return (nodes, BranchEnd::Lost);
         };
@@ -450,7 +494,8 @@ impl Walk {
         (nodes, BranchEnd::Rest)
     }
 
-    /// The motion of amplitude zero beside a small one, near this parameter: where a self-excited motion is born.
+    /// The motion of amplitude zero beside a small one, near this parameter: where a self-excited
+    /// motion is born.
     pub(super) fn rest_beside(&self, balance: &Balance, here: &Node, near: f64) -> Option<Node> {
         /// Of the largest motion, and of the range: what is beside.
         const BESIDE: f64 = 0.1;
@@ -459,7 +504,12 @@ impl Walk {
             return None;
         }
         let [low, high] = self.range;
-        let born = hopf::near(balance.driven, here.coefficients[0], near, [small, high - low])?;
+        let born = hopf::near(
+            balance.driven,
+            here.coefficients[0],
+            near,
+            [small, high - low],
+        )?;
         let far = (born.parameter - here.parameter).abs() > BESIDE * (high - low)
             || (born.position - here.coefficients[0]).abs() > small;
         if far || !(low..=high).contains(&born.parameter) {
@@ -483,7 +533,9 @@ impl Walk {
         let length = weights.norm(&way);
         let offset = &target - &from;
         let along = weights.dot(&offset, &way) / length;
-        let across = (weights.dot(&offset, &offset) - along * along).max(0.0).sqrt();
+        let across = (weights.dot(&offset, &offset) - along * along)
+            .max(0.0)
+            .sqrt();
         let same_way = weights.dot(&first.tangent, &way) > 0.0;
         same_way && (0.0..=length).contains(&along) && across < 0.1 * length
     }
@@ -509,8 +561,8 @@ impl Walk {
         node(&factors, coefficients, bound, weights)
     }
 
-    /// Motions beside a crossing of branches, one on either side: the direction in which the equations have a second solution, and
-    /// the motions a little way along it.
+    /// Motions beside a crossing of branches, one on either side: the direction in which the
+    /// equations have a second solution, and the motions a little way along it.
     pub fn crossing(&self, balance: &Balance, at: &Node) -> Vec<Node> {
         const APART: f64 = 0.02;
         let size = balance.size();
@@ -535,7 +587,8 @@ impl Walk {
             let along = vector.dot(&tangent);
             vector - &tangent * along
         });
-        let Some(second) = candidates.max_by(|one, other| one.norm().total_cmp(&other.norm())) else {
+        let Some(second) = candidates.max_by(|one, other| one.norm().total_cmp(&other.norm()))
+        else {
             return vec![];
         };
         let second = &second / second.norm();
@@ -551,9 +604,15 @@ impl Walk {
     }
 }
 
-/// A point with its tangent, from the factors of the bordered equations there. Their determinant has the same sign whatever direction
-/// stands in the last row, as long as the tangent goes the same way.
-fn node(factors: &LU<f64, Dyn, Dyn>, coefficients: DVector<f64>, parameter: f64, weights: Weights) -> Option<Node> {
+/// A point with its tangent, from the factors of the bordered equations there. Their determinant
+/// has the same sign whatever direction stands in the last row, as long as the tangent goes the
+/// same way.
+fn node(
+    factors: &LU<f64, Dyn, Dyn>,
+    coefficients: DVector<f64>,
+    parameter: f64,
+    weights: Weights,
+) -> Option<Node> {
     let size = coefficients.len();
     let mut right = DVector::zeros(size + 1);
     right[size] = 1.0;
@@ -574,7 +633,11 @@ fn node(factors: &LU<f64, Dyn, Dyn>, coefficients: DVector<f64>, parameter: f64,
 /// The sign of a determinant, which itself may be beyond doubles.
 fn sign_of_determinant(factors: &LU<f64, Dyn, Dyn>) -> f64 {
     let upper = factors.u();
-    let negative = upper.diagonal().iter().filter(|entry| **entry < 0.0).count();
+    let negative = upper
+        .diagonal()
+        .iter()
+        .filter(|entry| **entry < 0.0)
+        .count();
     let sign: f64 = factors.p().determinant();
     if negative % 2 == 1 { -sign } else { sign }
 }

@@ -6,10 +6,11 @@
 //! multipliers: 1, along the motion, and det M = exp(-integral of f_v over T)
 //! ```
 //!
-//! In: a start near a motion without drive, and about its frequency. Out: the motion itself by shooting for start and period together
-//! (R. Seydel, *Practical Bifurcation and Stability Analysis*, Springer 2010, chapter 7). A motion that repels is followed backward in
-//! time, in which it attracts, so that errors shrink on the way. The multiplier along the motion is 1 by itself; the other one is that
-//! of Liouville's theorem, which does not cancel however small it is.
+//! In: a start near a motion without drive, and about its frequency. Out: the motion itself by
+//! shooting for start and period together (R. Seydel, *Practical Bifurcation and Stability
+//! Analysis*, Springer 2010, chapter 7). A motion that repels is followed backward in time, in
+//! which it attracts, so that errors shrink on the way. The multiplier along the motion is 1 by
+//! itself; the other one is that of Liouville's theorem, which does not cancel however small it is.
 
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
@@ -31,8 +32,8 @@ pub struct Guess {
     pub size: f64,
 }
 
-/// The motion over a time with its variations and the integral of -f_v; backward in time where `backward` says so. Nothing where it
-/// cannot be followed.
+/// The motion over a time with its variations and the integral of -f_v; backward in time where
+/// `backward` says so. Nothing where it cannot be followed.
 fn followed(
     driven: &Driven,
     guess: &Guess,
@@ -58,16 +59,25 @@ fn followed(
         t: 0.0,
         y: [start[0], start[1], 1.0, 0.0, 0.0, 1.0, 0.0],
     };
-    let path = integrate_first_order(rates, begin, period, &[], &options(guess.size, TOLERANCE)).ok()?;
+    let path =
+        integrate_first_order(rates, begin, period, &[], &options(guess.size, TOLERANCE)).ok()?;
     path.is_complete().then_some(path)
 }
 
-/// The periodic motion beside this one, and its frequency; nothing where shooting does not settle, or goes far away.
-pub fn true_cycle(driven: &Driven, guess: &Guess, parameter: f64, backward: bool) -> Option<TrueMotion> {
+/// The periodic motion beside this one, and its frequency; nothing where shooting does not settle,
+/// or goes far away.
+pub fn true_cycle(
+    driven: &Driven,
+    guess: &Guess,
+    parameter: f64,
+    backward: bool,
+) -> Option<TrueMotion> {
     const MOST: usize = 15;
     /// Parts of the size of the motion by which the start may move, and of its period.
     const FAR: f64 = 0.3;
-    let &Guess { frequency, size, .. } = guess;
+    let &Guess {
+        frequency, size, ..
+    } = guess;
     let sign = if backward { -1.0 } else { 1.0 };
     let flow = |[x, v]: [f64; 2]| [sign * v, -sign * driven.force(&[x, v, 0.0, parameter])];
     let measure = |step: [f64; 2]| step[0].hypot(step[1] / frequency);
@@ -113,7 +123,12 @@ pub fn true_cycle(driven: &Driven, guess: &Guess, parameter: f64, backward: bool
     None
 }
 
-fn described(path: &Trajectory<Point<[f64; 7]>>, start: [f64; 2], period: f64, determinant: f64) -> TrueMotion {
+fn described(
+    path: &Trajectory<Point<[f64; 7]>>,
+    start: [f64; 2],
+    period: f64,
+    determinant: f64,
+) -> TrueMotion {
     let positions: Vec<f64> = path
         .samples(SAMPLES + 1)
         .take(SAMPLES)
@@ -132,8 +147,9 @@ fn described(path: &Trajectory<Point<[f64; 7]>>, start: [f64; 2], period: f64, d
     }
 }
 
-/// Where a simulation has come to that was let go here and followed for so many periods of about this frequency: its frequency by its
-/// own return, and its positions over that period at equal steps. Nothing where it does not come back, escapes, or the budget is spent.
+/// Where a simulation has come to that was let go here and followed for so many periods of about
+/// this frequency: its frequency by its own return, and its positions over that period at equal
+/// steps. Nothing where it does not come back, escapes, or the budget is spent.
 pub fn settled(
     driven: &Driven,
     guess: &Guess,
@@ -152,7 +168,9 @@ pub fn settled(
     };
     let mut follow = |start: [f64; 2], duration: f64| {
         let begin = Point { t: 0.0, y: start };
-        let path = integrate_first_order(rates, begin, duration, &[], &options(guess.size, CLOSELY)).ok()?;
+        let path =
+            integrate_first_order(rates, begin, duration, &[], &options(guess.size, CLOSELY))
+                .ok()?;
         let more = budget.spend(path.evaluations());
         (path.is_complete() && more).then_some(path)
     };
@@ -175,11 +193,18 @@ pub fn settled(
         })
     };
     const CELLS: u32 = 60;
-    let time = |cell: u32| period * (2.0 - LONGER + 2.0 * (LONGER - 1.0) * f64::from(cell) / f64::from(CELLS));
-    let returns = (0..CELLS).filter(|cell| across(time(*cell)) < 0.0 && across(time(cell + 1)) >= 0.0);
+    let time = |cell: u32| {
+        period * (2.0 - LONGER + 2.0 * (LONGER - 1.0) * f64::from(cell) / f64::from(CELLS))
+    };
+    let returns =
+        (0..CELLS).filter(|cell| across(time(*cell)) < 0.0 && across(time(cell + 1)) >= 0.0);
     let own = returns
         .filter_map(|cell| find_root(across, time(cell), time(cell + 1)).ok())
         .find(|time| away(*time) <= BACK * guess.size)?;
-    let positions = (0..SAMPLES).filter_map(|sample| path.state_at(own * sample as f64 / SAMPLES as f64));
-    Some((std::f64::consts::TAU / own, positions.map(|point| point.y[0]).collect()))
+    let positions =
+        (0..SAMPLES).filter_map(|sample| path.state_at(own * sample as f64 / SAMPLES as f64));
+    Some((
+        std::f64::consts::TAU / own,
+        positions.map(|point| point.y[0]).collect(),
+    ))
 }

@@ -4,9 +4,10 @@
 //! x'' + f(x, x', t; p) = 0,   theta = omega t,   omega = Omega(p)/n   ->   omega^2 X'' + f(X, omega X', theta/omega; p) = 0
 //! ```
 //!
-//! In: an oscillator with exact numbers for all parameters but one, p, which varies, and how many periods of the drive, n, a period
-//! of the motion takes. Out: f and its derivatives by x, x' and p at a fixed phase as straight lists of operations. Time may stand
-//! inside `sin`, `cos` and `tan` alone, as `Omega*t + phase`; the frequencies found there must be whole multiples of one, Omega.
+//! In: an oscillator with exact numbers for all parameters but one, p, which varies, and how many
+//! periods of the drive, n, a period of the motion takes. Out: f and its derivatives by x, x' and p
+//! at a fixed phase as straight lists of operations. Time may stand inside `sin`, `cos` and `tan`
+//! alone, as `Omega*t + phase`; the frequencies found there must be whole multiples of one, Omega.
 //! Where it does not occur at all, omega is an unknown of every motion.
 
 use num_integer::Integer as _;
@@ -28,7 +29,8 @@ pub struct Driven {
     pub parameter: Symbol,
     /// Periods of the drive in a period of the motion.
     pub periods: usize,
-    /// Whether nothing drives it: the frequency of a motion is then an unknown, for which `frequency` is a name.
+    /// Whether nothing drives it: the frequency of a motion is then an unknown, for which
+    /// `frequency` is a name.
     pub self_excited: bool,
     /// f(x, x', theta; p) with the sides of the jumps that the motion is on, where there are some.
     force: CompiledFunction,
@@ -54,7 +56,8 @@ const CORNERS: [Function; 5] = [
     Function::Minimum,
 ];
 
-/// A line of places and velocities on which the force jumps, `n_x x + n_v x' = c(p)`; n_v is one, or n_x where n_v is zero.
+/// A line of places and velocities on which the force jumps, `n_x x + n_v x' = c(p)`; n_v is one,
+/// or n_x where n_v is zero.
 #[derive(Clone, Debug)]
 struct Jump {
     normal: [f64; 2],
@@ -69,12 +72,15 @@ struct Line {
     level: Expr,
 }
 
-/// The argument of a part of a force that is a step where this changes its sign, if a place or a velocity stands in it.
+/// The argument of a part of a force that is a step where this changes its sign, if a place or a
+/// velocity stands in it.
 fn argument_of_step<'a>(part: &'a Expr, oscillator: &Oscillator) -> Option<&'a Expr> {
     let Node::Function(Function::Sign | Function::Step, arguments) = part.node() else {
         return None;
     };
-    let moves = |argument: &&Expr| argument.contains(oscillator.coordinate) || argument.contains(oscillator.velocity());
+    let moves = |argument: &&Expr| {
+        argument.contains(oscillator.coordinate) || argument.contains(oscillator.velocity())
+    };
     arguments.first().filter(moves)
 }
 
@@ -100,14 +106,24 @@ fn on_side(
 }
 
 /// Whether an argument of a step is zero on this line, and then whether it grows across it.
-fn grows_across(argument: &Expr, line: &Line, oscillator: &Oscillator) -> Result<Option<bool>, ResponseError> {
+fn grows_across(
+    argument: &Expr,
+    line: &Line,
+    oscillator: &Oscillator,
+) -> Result<Option<bool>, ResponseError> {
     let found = line_of(argument, oscillator)?.filter(|(own, _)| own == line);
     Ok(found.map(|(_, grows)| grows))
 }
 
-/// Whether a force has two values on a line on which steps of it change: their factors together do not vanish there, as those of
-/// friction, where those of a stop `(x - 1)*H(x - 1)` do, however they are written.
-fn jumps_across(force: &Expr, line: &Line, oscillator: &Oscillator, parameter: Symbol) -> Result<bool, ResponseError> {
+/// Whether a force has two values on a line on which steps of it change: their factors together do
+/// not vanish there, as those of friction, where those of a stop `(x - 1)*H(x - 1)` do, however
+/// they are written.
+fn jumps_across(
+    force: &Expr,
+    line: &Line,
+    oscillator: &Oscillator,
+    parameter: Symbol,
+) -> Result<bool, ResponseError> {
     let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
     let [by_position, by_velocity] = &line.normal;
     let (name, on_line) = match by_velocity.is_zero() {
@@ -134,14 +150,16 @@ fn jumps_across(force: &Expr, line: &Line, oscillator: &Oscillator, parameter: S
     Ok(!cancel(&terms))
 }
 
-/// Whether terms that no rule takes together cancel at all places, velocities, times and parameters that are tried.
+/// Whether terms that no rule takes together cancel at all places, velocities, times and parameters
+/// that are tried.
 fn cancel(terms: &[CompiledFunction]) -> bool {
     const PLACES: i32 = 24;
     const ROUNDING: f64 = 1e-12;
     let mut told = false;
     for index in 0..PLACES {
         // No place is special, and none is where another one is.
-        let number = |step: f64, from: f64, width: f64| from + width * (step * f64::from(index)).fract();
+        let number =
+            |step: f64, from: f64, width: f64| from + width * (step * f64::from(index)).fract();
         let at = [
             number(0.618_034, -4.0, 8.0),
             number(0.414_214, -4.0, 8.0),
@@ -161,9 +179,12 @@ fn cancel(terms: &[CompiledFunction]) -> bool {
     told
 }
 
-/// The line on which the argument of a jump is zero, and whether it grows across it; nothing where that is no line of places and
-/// velocities, the same at every time.
-fn line_of(argument: &Expr, oscillator: &Oscillator) -> Result<Option<(Line, bool)>, ResponseError> {
+/// The line on which the argument of a jump is zero, and whether it grows across it; nothing where
+/// that is no line of places and velocities, the same at every time.
+fn line_of(
+    argument: &Expr,
+    oscillator: &Oscillator,
+) -> Result<Option<(Line, bool)>, ResponseError> {
     let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
     let factor = |name: Symbol| -> Result<Option<Rational>, ResponseError> {
         Ok(argument.differentiate(name)?.expand()?.as_number().cloned())
@@ -191,8 +212,9 @@ fn line_of(argument: &Expr, oscillator: &Oscillator) -> Result<Option<(Line, boo
     Ok(Some((Line { normal, level }, grows)))
 }
 
-/// The force with names for its sides, 1 or -1, in place of what jumps, and the lines on which it does; the force as it is where nothing
-/// jumps. A step across which the force is continuous may be followed as it stands.
+/// The force with names for its sides, 1 or -1, in place of what jumps, and the lines on which it
+/// does; the force as it is where nothing jumps. A step across which the force is continuous may be
+/// followed as it stands.
 fn with_sides(
     oscillator: &Oscillator,
     parameter: Symbol,
@@ -207,7 +229,9 @@ fn with_sides(
         {
             match line_of(argument, oscillator)? {
                 Some((line, _)) if !lines.contains(&line) => lines.push(line),
-                None if argument.contains(oscillator.velocity()) => return Err(ResponseError::Jump(term.to_string())),
+                None if argument.contains(oscillator.velocity()) => {
+                    return Err(ResponseError::Jump(term.to_string()));
+                }
                 _ => {}
             }
         }
@@ -230,11 +254,17 @@ fn with_sides(
 }
 
 impl Driven {
-    /// Of an oscillator without other parameters than the one that varies; self-excited where time does not occur.
+    /// Of an oscillator without other parameters than the one that varies; self-excited where time
+    /// does not occur.
     ///
     /// # Errors
-    /// A drive that is not periodic; several frequencies that are no multiples of one; a derivative that cannot be written.
-    pub fn new(oscillator: &Oscillator, parameter: Symbol, periods: usize) -> Result<Self, ResponseError> {
+    /// A drive that is not periodic; several frequencies that are no multiples of one; a derivative
+    /// that cannot be written.
+    pub fn new(
+        oscillator: &Oscillator,
+        parameter: Symbol,
+        periods: usize,
+    ) -> Result<Self, ResponseError> {
         if !oscillator.force.contains(Symbol::new("t")) {
             let names: Vec<Symbol> = oscillator.names().into_iter().chain([parameter]).collect();
             return Ok(Self {
@@ -256,7 +286,11 @@ impl Driven {
     ) -> Result<Self, ResponseError> {
         let time = Symbol::new("t");
         let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
-        let names: Vec<Symbol> = oscillator.names().into_iter().chain([velocity, parameter]).collect();
+        let names: Vec<Symbol> = oscillator
+            .names()
+            .into_iter()
+            .chain([velocity, parameter])
+            .collect();
         let phase = fresh("theta", &names);
         let stem = fresh_stem("side", &names);
         let side = |index: usize| Symbol::new(&format!("{stem}{index}"));
@@ -266,7 +300,9 @@ impl Driven {
         let force = in_phase(&force, time, &moment)?;
         let own = [position, velocity, phase, parameter];
         let arguments: Vec<Symbol> = own.into_iter().chain((0..lines.len()).map(side)).collect();
-        let compiled = |expression: &Expr| CompiledFunction::new(expression, &arguments).map_err(ResponseError::from);
+        let compiled = |expression: &Expr| {
+            CompiledFunction::new(expression, &arguments).map_err(ResponseError::from)
+        };
         let slope = |by: Symbol| compiled(&force.differentiate(by)?);
         let undamped = oscillator
             .parts()
@@ -286,7 +322,10 @@ impl Driven {
                     })
                 })
                 .collect::<Result<_, _>>()?,
-            in_time: CompiledFunction::new(&oscillator.force, &[position, velocity, time, parameter])?,
+            in_time: CompiledFunction::new(
+                &oscillator.force,
+                &[position, velocity, time, parameter],
+            )?,
             base: [
                 CompiledFunction::new(&base, &[parameter])?,
                 CompiledFunction::new(&base.differentiate(parameter)?, &[parameter])?,
@@ -296,7 +335,9 @@ impl Driven {
             periods,
             self_excited: false,
             undamped,
-            smooth: !CORNERS.iter().any(|corner| oscillator.force.contains_function(*corner)),
+            smooth: !CORNERS
+                .iter()
+                .any(|corner| oscillator.force.contains_function(*corner)),
         })
     }
 
@@ -310,7 +351,8 @@ impl Driven {
         self.base[1].call(&[parameter])
     }
 
-    /// The velocity at which the force jumps, if it does there alone, as that of dry friction at zero.
+    /// The velocity at which the force jumps, if it does there alone, as that of dry friction at
+    /// zero.
     pub fn jump_speed(&self, parameter: f64) -> Option<f64> {
         match self.jumps.as_slice() {
             [jump] if jump.normal[0] == 0.0 => Some(jump.level[0].call(&[parameter])),
@@ -320,7 +362,9 @@ impl Driven {
 
     /// The derivative of that velocity by the parameter.
     pub fn jump_speed_slope(&self, parameter: f64) -> f64 {
-        self.jumps.first().map_or(0.0, |jump| jump.level[1].call(&[parameter]))
+        self.jumps
+            .first()
+            .map_or(0.0, |jump| jump.level[1].call(&[parameter]))
     }
 
     /// On how many lines of places and velocities the force jumps.
@@ -328,7 +372,8 @@ impl Driven {
         self.jumps.len()
     }
 
-    /// Whether harmonic balance takes its jumps: there are none, or one with the velocity under a drive.
+    /// Whether harmonic balance takes its jumps: there are none, or one with the velocity under a
+    /// drive.
     pub fn is_balanced(&self) -> bool {
         match self.jumps.as_slice() {
             [] => true,
@@ -348,7 +393,9 @@ impl Driven {
         // The velocity zero is met exactly.
         match normal {
             [0.0, _] => v - level[0].call(&[parameter]),
-            [by_position, by_velocity] => by_position * x + by_velocity * v - level[0].call(&[parameter]),
+            [by_position, by_velocity] => {
+                by_position * x + by_velocity * v - level[0].call(&[parameter])
+            }
         }
     }
 
@@ -370,7 +417,9 @@ impl Driven {
 
     /// f as it is on these sides of its jumps, 1 above and -1 below.
     pub fn force_on(&self, at: &[f64; 4], sides: &[f64]) -> f64 {
-        with(at, sides, self.jumps.len(), |arguments| self.force.call(arguments))
+        with(at, sides, self.jumps.len(), |arguments| {
+            self.force.call(arguments)
+        })
     }
 
     /// Its derivatives on these sides.
@@ -395,7 +444,12 @@ impl Driven {
 }
 
 /// What a function gives for a place and the sides of so many jumps.
-fn with<T>([x, v, phase, p]: &[f64; 4], sides: &[f64], jumps: usize, function: impl Fn(&[f64]) -> T) -> T {
+fn with<T>(
+    [x, v, phase, p]: &[f64; 4],
+    sides: &[f64],
+    jumps: usize,
+    function: impl Fn(&[f64]) -> T,
+) -> T {
     match (jumps, sides) {
         (0, _) => function(&[*x, *v, *phase, *p]),
         (1, [side]) => function(&[*x, *v, *phase, *p, *side]),
@@ -407,18 +461,20 @@ fn with<T>([x, v, phase, p]: &[f64; 4], sides: &[f64], jumps: usize, function: i
     }
 }
 
-/// The expression with the phase in place of time; the arguments of `sin` and the like are written out, so that
-/// `Omega*theta/Omega` is `theta`.
+/// The expression with the phase in place of time; the arguments of `sin` and the like are written
+/// out, so that `Omega*theta/Omega` is `theta`.
 fn in_phase(expression: &Expr, time: Symbol, moment: &Expr) -> Result<Expr, ResponseError> {
-    Ok(expression.fold(|node, children: &[Expr]| match node.node() {
-        Node::Symbol(name) if *name == time => Ok(moment.clone()),
-        Node::Function(..) if node.contains(time) => {
-            let arguments: Result<Vec<Expr>, _> = children.iter().map(Expr::expand).collect();
-            node.with_children(&arguments?)
-        }
-        _ if children.is_empty() => Ok(node.clone()),
-        _ => node.with_children(children),
-    })?)
+    Ok(
+        expression.fold(|node, children: &[Expr]| match node.node() {
+            Node::Symbol(name) if *name == time => Ok(moment.clone()),
+            Node::Function(..) if node.contains(time) => {
+                let arguments: Result<Vec<Expr>, _> = children.iter().map(Expr::expand).collect();
+                node.with_children(&arguments?)
+            }
+            _ if children.is_empty() => Ok(node.clone()),
+            _ => node.with_children(children),
+        })?,
+    )
 }
 
 /// The frequency of which all frequencies of the drive are whole multiples.
@@ -433,8 +489,12 @@ fn drive_frequency(oscillator: &Oscillator) -> Result<Expr, ResponseError> {
         // Whether time stands outside of every periodic function.
         let bare = term.fold(|node, children: &[bool]| match node.node() {
             Node::Symbol(name) => Ok::<bool, ResponseError>(*name == time),
-            Node::Function(Function::Sin | Function::Cos | Function::Tan, arguments) if node.contains(time) => {
-                let frequency = arguments.first().map(|argument| argument.differentiate(time));
+            Node::Function(Function::Sin | Function::Cos | Function::Tan, arguments)
+                if node.contains(time) =>
+            {
+                let frequency = arguments
+                    .first()
+                    .map(|argument| argument.differentiate(time));
                 let frequency = frequency.unwrap_or_else(|| Ok(Expr::zero()))?.expand()?;
                 if own.iter().any(|name| frequency.contains(*name)) {
                     return Ok(true);
@@ -463,7 +523,10 @@ fn drive_frequency(oscillator: &Oscillator) -> Result<Expr, ResponseError> {
         let ratio = ratio.abs();
         common = Some(match common {
             None => ratio,
-            Some(common) => Rational::new(common.numer().gcd(ratio.numer()), common.denom().lcm(ratio.denom())),
+            Some(common) => Rational::new(
+                common.numer().gcd(ratio.numer()),
+                common.denom().lcm(ratio.denom()),
+            ),
         });
     }
     let factor = common.unwrap_or_else(num_traits::One::one);
@@ -482,7 +545,9 @@ mod tests {
     fn frequency(text: &str) -> Result<String, String> {
         let oscillator = Oscillator::parse(text).unwrap();
         let found = drive_frequency(&oscillator);
-        found.map(|found| found.to_string()).map_err(|error| error.to_string())
+        found
+            .map(|found| found.to_string())
+            .map_err(|error| error.to_string())
     }
 
     #[test]
@@ -529,7 +594,8 @@ mod tests {
             ("(exp(x - p) - p)*H(x - p)", 1),
             ("sgn(x' - p) + sgn(x' + x)*x'^2", 2),
         ] {
-            let oscillator = Oscillator::parse(&format!("x'' + x'/5 + x + {force} = cos(t)")).unwrap();
+            let oscillator =
+                Oscillator::parse(&format!("x'' + x'/5 + x + {force} = cos(t)")).unwrap();
             let driven = Driven::new(&oscillator, "p".into(), 1).unwrap();
             assert_eq!(driven.jumps(), jumps, "{force}");
         }

@@ -23,7 +23,9 @@ pub enum ResponseError {
         range: [f64; 2],
     },
     /// Periods of a drive that there is not.
-    #[error("there is no drive of which a motion could take {0} periods: time `t` does not occur in the equation")]
+    #[error(
+        "there is no drive of which a motion could take {0} periods: time `t` does not occur in the equation"
+    )]
     NoPeriods(usize),
     /// Time enters in a way that does not repeat.
     #[error("the term `{0}` is not periodic in time")]

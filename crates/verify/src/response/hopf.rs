@@ -4,9 +4,10 @@
 //! f(x, 0; p) = 0,   f_v(x, 0; p) = 0,   omega^2 = f_x(x, 0; p) > 0
 //! ```
 //!
-//! (Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, Springer 2004, chapter 3.) In: an equation without drive, a place and a
-//! parameter nearby. Out: the place of rest, the parameter and the frequency of the smallest motions, by Newton's method on the equation
-//! itself, whatever number of harmonics the motions beside it have.
+//! (Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, Springer 2004, chapter 3.) In: an
+//! equation without drive, a place and a parameter nearby. Out: the place of rest, the parameter
+//! and the frequency of the smallest motions, by Newton's method on the equation itself, whatever
+//! number of harmonics the motions beside it have.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -24,8 +25,14 @@ pub struct Birth {
     pub frequency: f64,
 }
 
-/// The Hopf point near a place and a parameter, measured in these lengths; nothing where Newton's method does not settle.
-pub fn near(driven: &Driven, position: f64, parameter: f64, [size, range]: [f64; 2]) -> Option<Birth> {
+/// The Hopf point near a place and a parameter, measured in these lengths; nothing where Newton's
+/// method does not settle.
+pub fn near(
+    driven: &Driven,
+    position: f64,
+    parameter: f64,
+    [size, range]: [f64; 2],
+) -> Option<Birth> {
     const MOST: usize = 30;
     const SETTLED: f64 = 1e-12;
     /// The finite differences of the damping, of the lengths.
@@ -37,10 +44,16 @@ pub fn near(driven: &Driven, position: f64, parameter: f64, [size, range]: [f64;
         let damping_slope = |index: usize| {
             let mut step = Vector2::zeros();
             step[index] = DIFFERENCE * lengths[index];
-            let [before, after] = [place - step, place + step].map(|beside| driven.slopes(&at(beside))[1]);
+            let [before, after] =
+                [place - step, place + step].map(|beside| driven.slopes(&at(beside))[1]);
             (after - before) / (2.0 * step[index])
         };
-        let matrix = Matrix2::new(by_position, by_parameter, damping_slope(0), damping_slope(1));
+        let matrix = Matrix2::new(
+            by_position,
+            by_parameter,
+            damping_slope(0),
+            damping_slope(1),
+        );
         Some((Vector2::new(driven.force(&at(*place)), by_velocity), matrix))
     };
     let judged = |place: &Vector2<f64>, step: &Vector2<f64>| match step[0].abs() <= SETTLED * size {

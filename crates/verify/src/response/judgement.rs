@@ -1,4 +1,5 @@
-//! Points of a branch beside the true motion that shooting finds, and simulations let go beside the stable ones.
+//! Points of a branch beside the true motion that shooting finds, and simulations let go beside the
+//! stable ones.
 
 use nalgebra::Matrix2;
 
@@ -6,7 +7,8 @@ use super::balance::Balance;
 use super::continuation::Node;
 use super::cycle::{self, Guess, true_cycle};
 use super::stability::{
-    Floquet, SAMPLES, TrueMotion, first_harmonic, half_of_peak_to_peak, multipliers_along, periodic_motion, settle,
+    Floquet, SAMPLES, TrueMotion, first_harmonic, half_of_peak_to_peak, multipliers_along,
+    periodic_motion, settle,
 };
 use super::{Asked, Branch, Point, Simulated};
 use crate::trajectory;
@@ -35,10 +37,12 @@ impl Asked<'_> {
         }
         let start = node.begins(balance);
         let size = balance.extent(&node.coefficients);
-        let truth = periodic_motion(&self.driven, start, node.parameter, size.max(1e-12)).filter(|truth| {
-            let [cosine, sine] = [1, 2].map(|index| node.coefficients[index]);
-            (truth.first_harmonic[0] - cosine).hypot(truth.first_harmonic[1] - sine) <= OTHER * size.max(1e-12)
-        });
+        let truth =
+            periodic_motion(&self.driven, start, node.parameter, size.max(1e-12)).filter(|truth| {
+                let [cosine, sine] = [1, 2].map(|index| node.coefficients[index]);
+                (truth.first_harmonic[0] - cosine).hypot(truth.first_harmonic[1] - sine)
+                    <= OTHER * size.max(1e-12)
+            });
         let floquet = truth.map(|truth| truth.floquet);
         let along = || {
             // Across a jump only the true motion tells.
@@ -64,16 +68,24 @@ impl Asked<'_> {
             size: balance.extent(u),
         };
         let damping = balance.motion(u).into_iter().map(|[x, by_phase, _]| {
-            let [_, by_velocity, _] = self.driven.slopes(&[x, frequency * by_phase, 0.0, parameter]);
+            let [_, by_velocity, _] =
+                self.driven
+                    .slopes(&[x, frequency * by_phase, 0.0, parameter]);
             by_velocity
         });
         let mean = damping.sum::<f64>() / balance.samples() as f64;
         let along = Floquet {
-            monodromy: Matrix2::new((-mean * std::f64::consts::TAU / frequency).exp(), 0.0, 0.0, 1.0),
+            monodromy: Matrix2::new(
+                (-mean * std::f64::consts::TAU / frequency).exp(),
+                0.0,
+                0.0,
+                1.0,
+            ),
             self_excited: true,
         };
         if guess.size == 0.0 {
-            // At rest it is what it is: there the place and the frequency come from the equation itself.
+            // At rest it is what it is: there the place and the frequency come from the equation
+            // itself.
             let at_rest = TrueMotion {
                 start: guess.start,
                 frequency,
@@ -85,14 +97,21 @@ impl Asked<'_> {
             return (Some(along), Some(at_rest));
         }
         let amplitude = |[cosine, sine]: [f64; 2]| cosine.hypot(sine);
-        let truth = true_cycle(&self.driven, &guess, parameter, along.largest() > 1.0).filter(|truth| {
-            let apart = amplitude(truth.first_harmonic) - amplitude(balance.harmonic(u, 1));
-            apart.abs() <= OTHER * guess.size
-        });
+        let truth =
+            true_cycle(&self.driven, &guess, parameter, along.largest() > 1.0).filter(|truth| {
+                let apart = amplitude(truth.first_harmonic) - amplitude(balance.harmonic(u, 1));
+                apart.abs() <= OTHER * guess.size
+            });
         (Some(truth.map_or(along, |truth| truth.floquet)), truth)
     }
 
-    pub(super) fn point(&self, balance: &Balance, node: &Node, (floquet, truth): Judged, size: f64) -> Point {
+    pub(super) fn point(
+        &self,
+        balance: &Balance,
+        node: &Node,
+        (floquet, truth): Judged,
+        size: f64,
+    ) -> Point {
         let u = &node.coefficients;
         let positions: Vec<f64> = balance.motion(u).iter().map(|point| point[0]).collect();
         /// Of the motion: less is rounding.
@@ -102,9 +121,14 @@ impl Asked<'_> {
         let frequency = balance.frequency(u, node.parameter);
         let (amplitude, phase) = match amplitude > NOTHING * peak {
             // Half a turn is pi, whatever rounding has left of the sine.
-            true if sine.abs() <= NOTHING * amplitude => {
-                (amplitude, if cosine < 0.0 { std::f64::consts::PI } else { 0.0 })
-            }
+            true if sine.abs() <= NOTHING * amplitude => (
+                amplitude,
+                if cosine < 0.0 {
+                    std::f64::consts::PI
+                } else {
+                    0.0
+                },
+            ),
             true => (amplitude, sine.atan2(cosine)),
             false => (0.0, 0.0),
         };
@@ -114,7 +138,11 @@ impl Asked<'_> {
             of_size.max((frequency / truth.frequency - 1.0).abs())
         });
         // On the circle itself only rounding tells.
-        let allowed = if self.driven.undamped { 1.0 + 1e-5 } else { 1.0 };
+        let allowed = if self.driven.undamped {
+            1.0 + 1e-5
+        } else {
+            1.0
+        };
         Point {
             parameter: node.parameter,
             harmonics: (0..=balance.harmonics)
@@ -132,7 +160,8 @@ impl Asked<'_> {
         }
     }
 
-    /// Simulations beside some stable points, disturbed a little and followed until they have settled.
+    /// Simulations beside some stable points, disturbed a little and followed until they have
+    /// settled.
     pub(super) fn simulated(&self, branches: &[Branch]) -> Vec<Simulated> {
         /// Points of a stable part of a branch, and of all of them.
         const EACH: usize = 6;
@@ -153,26 +182,36 @@ impl Asked<'_> {
         let mut found = Vec::new();
         let mut budget = self.budget();
         for branch in branches {
-            for part in branch.points.chunk_by(|one, other| one.stable == other.stable) {
+            for part in branch
+                .points
+                .chunk_by(|one, other| one.stable == other.stable)
+            {
                 if part.first().is_none_or(|point| point.stable != Some(true)) {
                     continue;
                 }
                 let steps = EACH.min(part.len());
                 for index in 0..steps {
                     let point = &part[(2 * index + 1) * part.len() / (2 * steps)];
-                    let largest = point.multipliers.map_or(1.0, |multipliers| multipliers[0].norm());
+                    let largest = point
+                        .multipliers
+                        .map_or(1.0, |multipliers| multipliers[0].norm());
                     let needed = (1e-7_f64 / DISTURBANCES[0]).ln() / largest.ln();
                     let stopped = self.question.interrupt.is_requested();
                     // Without drive what shooting does not find may be no motion at all.
                     let nothing = self.driven.self_excited && point.error.is_none();
-                    if !(needed > 0.0 && needed < PERIODS) || found.len() >= MOST || stopped || nothing {
+                    if !(needed > 0.0 && needed < PERIODS)
+                        || found.len() >= MOST
+                        || stopped
+                        || nothing
+                    {
                         continue;
                     }
                     let most = needed.ceil() as usize + 8;
                     let mut run = |disturbance: f64| {
                         let start = [point.start[0] + disturbance * point.peak, point.start[1]];
                         if self.driven.jumps() > 0 {
-                            let (frequency, positions) = self.simulated_by_series(start, point, most)?;
+                            let (frequency, positions) =
+                                self.simulated_by_series(start, point, most)?;
                             return Some(simulated(point, &positions, frequency, size));
                         }
                         if self.driven.self_excited {
@@ -181,10 +220,22 @@ impl Asked<'_> {
                                 frequency: point.frequency,
                                 size: point.peak,
                             };
-                            let found = cycle::settled(&self.driven, &guess, point.parameter, most, &mut budget)?;
+                            let found = cycle::settled(
+                                &self.driven,
+                                &guess,
+                                point.parameter,
+                                most,
+                                &mut budget,
+                            )?;
                             return Some(simulated(point, &found.1, found.0, size));
                         }
-                        let settled = settle(&self.driven, start, point.parameter, (most, CLOSELY), &mut budget)?;
+                        let settled = settle(
+                            &self.driven,
+                            start,
+                            point.parameter,
+                            (most, CLOSELY),
+                            &mut budget,
+                        )?;
                         Some(simulated(point, &settled.positions, point.frequency, size))
                     };
                     // Where the first leads to another motion the second, much smaller, decides.
@@ -202,9 +253,15 @@ impl Asked<'_> {
 }
 
 impl Asked<'_> {
-    /// Frequency and positions of the last of so many periods from a start, by the simulation that takes every jump at its event and knows
-    /// nothing of the map by which the points were found; nothing where it does not come so far.
-    fn simulated_by_series(&self, start: [f64; 2], point: &Point, periods: usize) -> Option<(f64, Vec<f64>)> {
+    /// Frequency and positions of the last of so many periods from a start, by the simulation that
+    /// takes every jump at its event and knows nothing of the map by which the points were found;
+    /// nothing where it does not come so far.
+    fn simulated_by_series(
+        &self,
+        start: [f64; 2],
+        point: &Point,
+        periods: usize,
+    ) -> Option<(f64, Vec<f64>)> {
         let mut course = trajectory::Course::of_equation(&self.oscillator);
         let period = std::f64::consts::TAU / point.frequency;
         course.energy = None;
@@ -217,7 +274,9 @@ impl Asked<'_> {
         course.duration = period * (periods + 2) as f64;
         if self.driven.self_excited {
             // From one least displacement to the next.
-            course.section = Some(trajectory::Section::Rising(self.oscillator.velocity().into()));
+            course.section = Some(trajectory::Section::Rising(
+                self.oscillator.velocity().into(),
+            ));
         }
         let motion = course.follow().ok().filter(|motion| motion.is_complete())?;
         let (from, to) = match (self.driven.self_excited, motion.crossings()) {
@@ -244,9 +303,16 @@ fn simulated(point: &Point, positions: &[f64], frequency: f64, size: f64) -> Sim
     }
 }
 
-/// The larger error of amplitude and peak, over the true peak; of motions that are little beside the largest, over a thousandth of it.
-fn relative_error([amplitude, peak]: [f64; 2], [true_amplitude, true_peak]: [f64; 2], size: f64) -> f64 {
-    let apart = (amplitude - true_amplitude).abs().max((peak - true_peak).abs());
+/// The larger error of amplitude and peak, over the true peak; of motions that are little beside
+/// the largest, over a thousandth of it.
+fn relative_error(
+    [amplitude, peak]: [f64; 2],
+    [true_amplitude, true_peak]: [f64; 2],
+    size: f64,
+) -> f64 {
+    let apart = (amplitude - true_amplitude)
+        .abs()
+        .max((peak - true_peak).abs());
     let over = true_peak.max(1e-3 * size);
     if over > 0.0 { apart / over } else { 0.0 }
 }

@@ -1,4 +1,5 @@
-//! The motion across jumps of the force, such as dry friction or a step in place, and its variation.
+//! The motion across jumps of the force, such as dry friction or a step in place, and its
+//! variation.
 //!
 //! ```text
 //! h = n_x x + n_v x' - c,   f = f+ where h > 0, f- where h < 0,   a = -f
@@ -7,13 +8,16 @@
 //! velocity alone:  S = [1 0; 0 a_behind/a_before] where it crosses,  [1 0; 0 0] where sticking begins,  1 where it ends
 //! ```
 //!
-//! S is the saltation matrix (R. I. Leine and H. Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems*, Springer 2004,
-//! chapter 7; M. di Bernardo, C. J. Budd, A. R. Champneys and P. Kowalczyk, *Piecewise-smooth Dynamical Systems*, Springer 2008, chapter
-//! 2). In: a start. Out: the motion leg by leg, each between the jumps or sticking on one, the ends of the legs located as events, and
-//! M(t). Of a force without such a jump it is one leg.
+//! S is the saltation matrix (R. I. Leine and H. Nijmeijer, *Dynamics and Bifurcations of
+//! Non-Smooth Mechanical Systems*, Springer 2004, chapter 7; M. di Bernardo, C. J. Budd, A. R.
+//! Champneys and P. Kowalczyk, *Piecewise-smooth Dynamical Systems*, Springer 2008, chapter 2). In:
+//! a start. Out: the motion leg by leg, each between the jumps or sticking on one, the ends of the
+//! legs located as events, and M(t). Of a force without such a jump it is one leg.
 
 use super::driven::Driven;
-use crate::numeric::ode::{Action, Event, Options, Point, StopReason, Trajectory, integrate_first_order};
+use crate::numeric::ode::{
+    Action, Event, Options, Point, StopReason, Trajectory, integrate_first_order,
+};
 
 /// Position, velocity and the two columns of M at a time.
 type Values = [f64; 6];
@@ -103,7 +107,13 @@ impl Course {
 }
 
 /// The motion from a start at phase zero; nothing where it cannot be followed.
-pub fn follow(driven: &Driven, start: [f64; 2], parameter: f64, until: Until, options: &Options) -> Option<Course> {
+pub fn follow(
+    driven: &Driven,
+    start: [f64; 2],
+    parameter: f64,
+    until: Until,
+    options: &Options,
+) -> Option<Course> {
     /// Legs of a period: beyond them it does not come to an end.
     const MOST: usize = 400;
     let mut run = Run::new(driven, start, parameter);
@@ -166,7 +176,10 @@ impl<'a> Run<'a> {
             sliding: None,
         };
         for index in (0..driven.jumps()).filter(|index| heights(*index) == 0.0) {
-            match [1.0, -1.0].into_iter().find(|side| side * run.rise(index, *side) > 0.0) {
+            match [1.0, -1.0]
+                .into_iter()
+                .find(|side| side * run.rise(index, *side) > 0.0)
+            {
                 Some(side) => run.sides[index] = side,
                 // At rest beside a step in place it is on neither side.
                 None if driven.normal(index)[1] != 0.0 => run.stick(index),
@@ -199,7 +212,9 @@ impl<'a> Run<'a> {
         let (driven, parameter) = (self.driven, self.parameter);
         let crossing = |(index, side): (usize, &f64)| {
             let side = if Some(index) == but { 0.0 } else { *side };
-            let height = move |point: &Point<Values>| side * driven.height(index, [point.y[0], point.y[1]], parameter);
+            let height = move |point: &Point<Values>| {
+                side * driven.height(index, [point.y[0], point.y[1]], parameter)
+            };
             Event::new(height, Action::Stop).falling()
         };
         self.sides.iter().enumerate().map(crossing).collect()
@@ -225,14 +240,25 @@ impl<'a> Run<'a> {
                 -by_position * y[4] - by_velocity * y[5],
             ];
         };
-        let events: Vec<_> = Self::turn(until).into_iter().chain(self.crossings(None)).collect();
-        let begin = Point { t: self.t, y: self.y };
+        let events: Vec<_> = Self::turn(until)
+            .into_iter()
+            .chain(self.crossings(None))
+            .collect();
+        let begin = Point {
+            t: self.t,
+            y: self.y,
+        };
         let path = integrate_first_order(rates, begin, until.time(), &events, options).ok()?;
         path.is_complete().then_some(path)
     }
 
     /// A leg on a jump: x' = c - n_x x, the velocity counted once.
-    fn sliding_leg(&self, surface: usize, until: Until, options: &Options) -> Option<Trajectory<Point<Values>>> {
+    fn sliding_leg(
+        &self,
+        surface: usize,
+        until: Until,
+        options: &Options,
+    ) -> Option<Trajectory<Point<Values>>> {
         let [by_position, _] = self.driven.normal(surface);
         let rates = |_: f64, y: &Values, rates: &mut Values| {
             *rates = [
@@ -250,7 +276,8 @@ impl<'a> Run<'a> {
             let (driven, omega, parameter) = (self.driven, self.omega, self.parameter);
             let pushed = move |point: &Point<Values>| {
                 let [x, v, ..] = point.y;
-                side * (by_position * v - driven.force_on(&[x, v, omega * point.t, parameter], &sides))
+                side * (by_position * v
+                    - driven.force_on(&[x, v, omega * point.t, parameter], &sides))
             };
             Event::new(pushed, Action::Stop).rising()
         });
@@ -265,7 +292,10 @@ impl<'a> Run<'a> {
             maximum_step: 0.05 * std::f64::consts::TAU / self.omega / self.driven.periods as f64,
             ..*options
         };
-        let begin = Point { t: self.t, y: self.y };
+        let begin = Point {
+            t: self.t,
+            y: self.y,
+        };
         let path = integrate_first_order(rates, begin, until.time(), &events, &options).ok()?;
         path.is_complete().then_some(path)
     }
@@ -307,7 +337,9 @@ impl<'a> Run<'a> {
 
     /// Puts it exactly on a jump.
     fn put_on(&mut self, index: usize) {
-        let height = self.driven.height(index, [self.y[0], self.y[1]], self.parameter);
+        let height = self
+            .driven
+            .height(index, [self.y[0], self.y[1]], self.parameter);
         match self.driven.normal(index) {
             [by_position, 0.0] => self.y[0] -= height / by_position,
             [_, by_velocity] => self.y[1] -= height / by_velocity,

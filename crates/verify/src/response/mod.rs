@@ -1,14 +1,15 @@
-//! Steady states of an oscillator, driven or self-excited: all branches of periodic motions with their stability, and what happens
-//! between them.
+//! Steady states of an oscillator, driven or self-excited: all branches of periodic motions with
+//! their stability, and what happens between them.
 //!
 //! ```text
 //! x'' + f(x, x', t; p) = 0,  f periodic in t:    X(theta) = a_0 + sum a_k cos(k theta) + b_k sin(k theta),  theta = omega t
 //! ```
 //!
-//! In: a [`Question`]: an oscillator with numbers for all parameters but one, and the range in which that one varies. Out: a
-//! [`Response`]: branches found by harmonic balance and followed by pseudo-arclength; the multipliers of the true motion beside each of
-//! their points; folds, crossings, period doublings, second frequencies; backbones; and how far all of that is from motions that
-//! Runge-Kutta finds. Units are those of the equation.
+//! In: a [`Question`]: an oscillator with numbers for all parameters but one, and the range in
+//! which that one varies. Out: a [`Response`]: branches found by harmonic balance and followed by
+//! pseudo-arclength; the multipliers of the true motion beside each of their points; folds,
+//! crossings, period doublings, second frequencies; backbones; and how far all of that is from
+//! motions that Runge-Kutta finds. Units are those of the equation.
 //!
 //! - [`driven`]: the equation in the phase of the motion.
 //! - [`balance`]: its equations for Fourier coefficients.
@@ -19,11 +20,13 @@
 //! - [`backbone`]: the free motion without damping.
 //! - [`slow`]: the same motions by slow equations of amplitude and phase.
 //!
-//! - [`cycle`]: the true motion where nothing drives it, for start and period together; [`hopf`]: where it is born.
+//! - [`cycle`]: the true motion where nothing drives it, for start and period together; [`hopf`]:
+//!   where it is born.
 //!
-//! Branches start where a simulation settles, from rest and from a ring of starts at several values of the parameter, and where others
-//! cross: that finds closed and disconnected ones wherever a simulation finds its way to them. Limit cycles are found by their return
-//! to where they turn, forward and backward in time.
+//! Branches start where a simulation settles, from rest and from a ring of starts at several values
+//! of the parameter, and where others cross: that finds closed and disconnected ones wherever a
+//! simulation finds its way to them. Limit cycles are found by their return to where they turn,
+//! forward and backward in time.
 
 pub mod backbone;
 pub mod balance;
@@ -82,7 +85,8 @@ pub struct Question {
     pub parameter: Symbol,
     /// Its lowest and its highest value.
     pub range: [f64; 2],
-    /// How many harmonics are kept; without it as many as bring the error below a tenth of the tolerance, 64 at most.
+    /// How many harmonics are kept; without it as many as bring the error below a tenth of the
+    /// tolerance, 64 at most.
     pub harmonics: Option<usize>,
     /// How many periods of the drive a period of the motion takes.
     pub periods: usize,
@@ -90,7 +94,8 @@ pub struct Question {
     pub tolerance: f64,
     /// Who may ask it to end.
     pub interrupt: Interrupt,
-    /// Who sees how far it has come: of the search for motions to begin with, then of the points that are judged, each time anew.
+    /// Who sees how far it has come: of the search for motions to begin with, then of the points
+    /// that are judged, each time anew.
     pub progress: Progress,
 }
 
@@ -111,15 +116,17 @@ pub struct Point {
     pub peak: f64,
     /// Position and velocity at t = 0: those of the true motion where it was found.
     pub start: [f64; 2],
-    /// Whether small disturbances die out, by the multipliers; without damping, whether they do not grow. Nothing where they could not
-    /// be found.
+    /// Whether small disturbances die out, by the multipliers; without damping, whether they do not
+    /// grow. Nothing where they could not be found.
     pub stable: Option<bool>,
-    /// The multipliers, the larger first; of a self-excited motion the one that decides, then the one along the motion, which is 1.
+    /// The multipliers, the larger first; of a self-excited motion the one that decides, then the
+    /// one along the motion, which is 1.
     pub multipliers: Option<[Complex<f64>; 2]>,
     /// The part of a period in which it sticks, held by dry friction.
     pub stuck: f64,
-    /// The error of amplitude or peak against the true motion that shooting found, the larger, over the true peak, or that of the
-    /// frequency, over the true one, if that is larger; nothing where it found none near.
+    /// The error of amplitude or peak against the true motion that shooting found, the larger, over
+    /// the true peak, or that of the frequency, over the true one, if that is larger; nothing where
+    /// it found none near.
     pub error: Option<f64>,
 }
 
@@ -130,7 +137,8 @@ pub struct Branch {
     pub points: Vec<Point>,
     /// Why it ends before the first one and behind the last.
     pub ends: [BranchEnd; 2],
-    /// Whether its mirror image, -x half a period of the drive later, is a branch as well, which is not listed.
+    /// Whether its mirror image, -x half a period of the drive later, is a branch as well, which is
+    /// not listed.
     pub mirrored: bool,
 }
 
@@ -177,7 +185,8 @@ pub struct Simulated {
     pub amplitude: f64,
     /// Half of peak to peak.
     pub peak: f64,
-    /// The error of the point against it: of amplitude or peak, the larger, over its peak, or of the frequency.
+    /// The error of the point against it: of amplitude or peak, the larger, over its peak, or of
+    /// the frequency.
     pub error: f64,
 }
 
@@ -186,7 +195,8 @@ pub struct Simulated {
 pub struct Elsewhere {
     /// The parameter.
     pub parameter: f64,
-    /// The periods after which it does, one for a motion that could not be followed; nothing where it does not within eight.
+    /// The periods after which it does, one for a motion that could not be followed; nothing where
+    /// it does not within eight.
     pub periods: Option<usize>,
 }
 
@@ -202,7 +212,8 @@ impl Elsewhere {
 pub struct Response {
     /// What was asked.
     pub question: Question,
-    /// The frequency of the drive; where there is none a name for that of the motion, of which each point has the number.
+    /// The frequency of the drive; where there is none a name for that of the motion, of which each
+    /// point has the number.
     pub frequency: Expr,
     /// Whether nothing drives the motion.
     pub self_excited: bool,
@@ -210,7 +221,8 @@ pub struct Response {
     pub undamped: bool,
     /// Whether the force jumps with the velocity, as dry friction does, or in place.
     pub jumps: bool,
-    /// Whether all branches are those of the map of a period, because harmonic balance does not take the jumps.
+    /// Whether all branches are those of the map of a period, because harmonic balance does not
+    /// take the jumps.
     pub by_map: bool,
     /// How many harmonics were kept.
     pub harmonics: usize,
@@ -220,17 +232,20 @@ pub struct Response {
     pub bifurcations: Vec<Bifurcation>,
     /// Folds of the balance that are none of the true motion, left out of these.
     pub ripple: Option<Ripple>,
-    /// The free motion without damping, about each place of rest; empty where the frequency does not vary.
+    /// The free motion without damping, about each place of rest; empty where the frequency does
+    /// not vary.
     pub backbone: Vec<Vec<BackbonePoint>>,
     /// Simulations that have settled on stable points.
     pub simulated: Vec<Simulated>,
-    /// Simulations that have settled on something else, or on a motion of this period that lies on no branch.
+    /// Simulations that have settled on something else, or on a motion of this period that lies on
+    /// no branch.
     pub elsewhere: Vec<Elsewhere>,
     /// The largest error of all points and simulations.
     pub error: Option<f64>,
     /// Points beside which shooting found no true motion.
     pub unjudged: usize,
-    /// Whether the error is within the tolerance, on the whole of what was found, and every motion was followed.
+    /// Whether the error is within the tolerance, on the whole of what was found, and every motion
+    /// was followed.
     pub verdict: Verdict,
     /// The steady motions by slow equations, where they were asked for.
     pub slow: Option<SlowResponse>,
@@ -289,7 +304,10 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
     loop {
         let attempt = asked.attempt(harmonics, &seeds);
         let may_have_more = question.harmonics.is_none() && 2 * harmonics <= MOST_HARMONICS;
-        if matches!(attempt, Err(ResponseError::NotFollowed { .. })) && may_have_more && fewer.is_none() {
+        if matches!(attempt, Err(ResponseError::NotFollowed { .. }))
+            && may_have_more
+            && fewer.is_none()
+        {
             harmonics *= 2;
             continue;
         }
@@ -303,17 +321,29 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
             },
             (Err(error), None) => return Err(error),
         };
-        let points: usize = response.branches.iter().map(|branch| branch.points.len()).sum();
+        let points: usize = response
+            .branches
+            .iter()
+            .map(|branch| branch.points.len())
+            .sum();
         let judged = 100 * response.unjudged <= points;
         let resolved = !response.ends_with(BranchEnd::Harmonics);
         let followed = response.elsewhere.is_empty();
-        let good =
-            resolved && judged && followed && response.error.is_some_and(|error| error <= 0.1 * question.tolerance);
+        let good = resolved
+            && judged
+            && followed
+            && response
+                .error
+                .is_some_and(|error| error <= 0.1 * question.tolerance);
         // What more harmonics do not better is not theirs, such as a jump of the force.
         let now = (response.error.unwrap_or(f64::INFINITY), response.unjudged);
         let stalled = resolved && followed && now.0 >= 0.7 * before.0 && now.1 >= before.1;
         // What has no branch yet has no error either.
-        before = if followed { now } else { (f64::INFINITY, usize::MAX) };
+        before = if followed {
+            now
+        } else {
+            (f64::INFINITY, usize::MAX)
+        };
         let fixed = question.harmonics.is_some() || !response.complete;
         let last = fixed || good || stalled || 2 * harmonics > MOST_HARMONICS;
         if last {
@@ -332,7 +362,9 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
 impl Response {
     /// Whether a branch ends for this reason.
     fn ends_with(&self, end: BranchEnd) -> bool {
-        self.branches.iter().any(|branch| branch.ends.contains(&end))
+        self.branches
+            .iter()
+            .any(|branch| branch.ends.contains(&end))
     }
 
     /// The same with the largest error of its points and simulations, and the verdict on it.
@@ -347,7 +379,10 @@ impl Response {
             (all + 1, none + usize::from(point.error.is_none()))
         });
         let small = error.is_some_and(|error| error <= self.question.tolerance);
-        let missed = self.elsewhere.iter().any(|elsewhere| elsewhere.periods == Some(1));
+        let missed = self
+            .elsewhere
+            .iter()
+            .any(|elsewhere| elsewhere.periods == Some(1));
         self.verdict = Verdict::of(small && 20 * unjudged <= all && !missed);
         (self.error, self.unjudged) = (error, unjudged);
         self
@@ -355,7 +390,8 @@ impl Response {
 }
 
 impl Question {
-    /// A question with automatic harmonics, a tolerance of 1 %, and motions of the period of the drive.
+    /// A question with automatic harmonics, a tolerance of 1 %, and motions of the period of the
+    /// drive.
     ///
     /// # Errors
     /// A text that is no equation, or values that are none.
@@ -392,11 +428,17 @@ struct Asked<'a> {
 impl<'a> Asked<'a> {
     fn new(question: &'a Question) -> Result<Self, ResponseError> {
         let Question {
-            oscillator, parameter, ..
+            oscillator,
+            parameter,
+            ..
         } = question;
         let known = &oscillator.parameters;
         let self_excited = !oscillator.force.contains(Symbol::new("t"));
-        if self_excited && oscillator.parts().is_ok_and(|parts| parts.damping.is_zero()) {
+        if self_excited
+            && oscillator
+                .parts()
+                .is_ok_and(|parts| parts.damping.is_zero())
+        {
             return Err(ResponseError::NoDrive);
         }
         if self_excited && question.periods != 1 {
@@ -411,7 +453,11 @@ impl<'a> Asked<'a> {
         if question.values.get(*parameter).is_some() {
             return Err(ResponseError::Given(*parameter));
         }
-        if let Some((unknown, _)) = question.values.iter().find(|(name, _)| !known.contains(name)) {
+        if let Some((unknown, _)) = question
+            .values
+            .iter()
+            .find(|(name, _)| !known.contains(name))
+        {
             return Err(ResponseError::Unknown(unknown));
         }
         let missing = |name: &&Symbol| *name != parameter && question.values.get(**name).is_none();
@@ -479,7 +525,9 @@ impl<'a> Asked<'a> {
     fn walk(&self, seeds: &[Seed], size: f64) -> Walk {
         Walk {
             // Corners and slow motions have long series of harmonics, and ends of their own.
-            resolved: self.question.harmonics.is_none() && self.driven.smooth && !self.driven.self_excited,
+            resolved: self.question.harmonics.is_none()
+                && self.driven.smooth
+                && !self.driven.self_excited,
             ordinary: size_of(seeds),
             range: self.question.range,
             longest: LONGEST_STEP,
@@ -502,7 +550,10 @@ impl<'a> Asked<'a> {
         self.follow_sticking(&balance, seeds, &mut paths, size);
         let (all_judged, changes, ripple) = self.judged_paths(&balance, seeds, &mut paths);
         // What is small is small beside the largest motion of all.
-        let size = paths.iter().map(|path| largest(&balance, path)).fold(0.0, f64::max);
+        let size = paths
+            .iter()
+            .map(|path| largest(&balance, path))
+            .fold(0.0, f64::max);
         let bifurcations = self.bifurcations(&balance, changes, size);
         let branches: Vec<Branch> = paths
             .iter()
@@ -519,13 +570,15 @@ impl<'a> Asked<'a> {
             })
             .collect();
         if branches.is_empty() {
-            return Err(match question.interrupt.is_requested() || self.driven.undamped {
-                true => self.nothing(),
-                false => ResponseError::NotFollowed {
-                    parameter: question.parameter,
-                    range: question.range,
+            return Err(
+                match question.interrupt.is_requested() || self.driven.undamped {
+                    true => self.nothing(),
+                    false => ResponseError::NotFollowed {
+                        parameter: question.parameter,
+                        range: question.range,
+                    },
                 },
-            });
+            );
         }
         let simulated = self.simulated(&branches);
         let elsewhere = self.unfollowed(&balance, &paths, seeds, size);
@@ -561,8 +614,8 @@ impl<'a> Asked<'a> {
         Ok(response.with_verdict())
     }
 
-    /// The same without what waves cannot say: ends of branches on which no true motion was found, because the period grows without
-    /// bound or the waves are too few.
+    /// The same without what waves cannot say: ends of branches on which no true motion was found,
+    /// because the period grows without bound or the waves are too few.
     fn without_tails(&self, mut response: Response) -> Result<Response, ResponseError> {
         /// Points without a true motion in a row that are no accident.
         const FEW: usize = 3;
@@ -581,7 +634,11 @@ impl<'a> Asked<'a> {
                 continue;
             };
             // Before no true motion is near any more the error has grown.
-            let within = |index: &&usize| points[**index].error.is_some_and(|error| error <= tolerance);
+            let within = |index: &&usize| {
+                points[**index]
+                    .error
+                    .is_some_and(|error| error <= tolerance)
+            };
             if count - 1 - last > FEW {
                 last = longest.iter().rfind(within).copied().unwrap_or(last);
             }
@@ -603,7 +660,11 @@ impl<'a> Asked<'a> {
         let slowest_of = |branch: usize| slowest.get(branch).copied().unwrap_or(f64::INFINITY);
         let bifurcations = response.bifurcations.iter();
         let kept = bifurcations.filter(|found| found.frequency >= slowest_of(found.branch));
-        let number = |branch: usize| (0..branch).filter(|index| slowest_of(*index).is_finite()).count();
+        let number = |branch: usize| {
+            (0..branch)
+                .filter(|index| slowest_of(*index).is_finite())
+                .count()
+        };
         response.bifurcations = kept
             .map(|found| Bifurcation {
                 branch: number(found.branch),
@@ -617,7 +678,8 @@ impl<'a> Asked<'a> {
         }
     }
 
-    /// Every point of the branches judged, and what happens between them; branches that cross are followed and added.
+    /// Every point of the branches judged, and what happens between them; branches that cross are
+    /// followed and added.
     fn judged_paths(
         &self,
         balance: &Balance,
@@ -655,10 +717,14 @@ impl<'a> Asked<'a> {
                     Some(_) => self.stuck_between(balance, from, to, part),
                     None => walk.between(balance, from, to, part),
                 };
-                let known = [(from, of_true_motion(*before)), (to, of_true_motion(*after))];
+                let known = [
+                    (from, of_true_motion(*before)),
+                    (to, of_true_motion(*after)),
+                ];
                 let found = bifurcation::between(balance, known, &between, &floquet);
                 for (mut kind, node) in found {
-                    let crossed = kind == BifurcationKind::BranchPoint && paths.len() < MOST_BRANCHES;
+                    let crossed =
+                        kind == BifurcationKind::BranchPoint && paths.len() < MOST_BRANCHES;
                     if crossed && self.follow_crossing(balance, &walk, &node, paths) {
                         kind = BifurcationKind::Centre;
                     }
@@ -668,9 +734,14 @@ impl<'a> Asked<'a> {
             let (own, left_out) = ripple::without_ripple(own, &path.nodes, &judged);
             ripple = Ripple::with(ripple, &left_out);
             changes.extend(own.into_iter().map(|(_, kind, node)| (kind, branch, node)));
-            let ends = path.ends.iter().zip([path.nodes.first(), path.nodes.last()]);
+            let ends = path
+                .ends
+                .iter()
+                .zip([path.nodes.first(), path.nodes.last()]);
             let born = ends.filter(|(end, _)| **end == BranchEnd::Rest);
-            changes.extend(born.filter_map(|(_, node)| Some((BifurcationKind::Hopf, branch, node?.clone()))));
+            changes.extend(
+                born.filter_map(|(_, node)| Some((BifurcationKind::Hopf, branch, node?.clone()))),
+            );
             all_judged.push(judged);
         }
         (all_judged, changes, ripple)
@@ -689,7 +760,10 @@ impl<'a> Asked<'a> {
                 amplitude: point.amplitude,
                 peak: point.peak,
             };
-            if !found.iter().any(|known| new.is_near(known, self.question.range, size)) {
+            if !found
+                .iter()
+                .any(|known| new.is_near(known, self.question.range, size))
+            {
                 found.push(new);
             }
         }
@@ -708,8 +782,13 @@ impl<'a> Asked<'a> {
 
     /// Why there is nothing.
     fn nothing(&self) -> ResponseError {
-        let Question { parameter, range, .. } = *self.question;
-        match (self.question.interrupt.is_requested(), self.driven.self_excited) {
+        let Question {
+            parameter, range, ..
+        } = *self.question;
+        match (
+            self.question.interrupt.is_requested(),
+            self.driven.self_excited,
+        ) {
             (true, _) => ResponseError::Interrupted {
                 parameter,
                 tried: self.tried.get(),

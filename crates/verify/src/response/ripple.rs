@@ -4,9 +4,10 @@
 //! det(1 - M) changes its sign where a multiplier of the true motion passes 1: at its folds, and where branches cross
 //! ```
 //!
-//! Where a motion has sharp turns the branch of its balance waves about that of the true motion, and near the top of a resonance, where
-//! the parameter hardly changes, each wave turns it back. In: the points of a branch with the true motions beside them, and the
-//! places where it turns. Out: the places where the true motion does not.
+//! Where a motion has sharp turns the branch of its balance waves about that of the true motion,
+//! and near the top of a resonance, where the parameter hardly changes, each wave turns it back.
+//! In: the points of a branch with the true motions beside them, and the places where it turns.
+//! Out: the places where the true motion does not.
 
 use super::bifurcation::BifurcationKind;
 use super::continuation::Node;
@@ -45,7 +46,8 @@ impl Ripple {
     }
 }
 
-/// The sign of det(1 - M) of the true motions beside these points, that of most of them; zero where there is none.
+/// The sign of det(1 - M) of the true motions beside these points, that of most of them; zero where
+/// there is none.
 fn side(judged: &[Judged]) -> f64 {
     let sign = |(_, truth): &Judged| {
         truth.map_or(0.0, |truth| {
@@ -54,15 +56,24 @@ fn side(judged: &[Judged]) -> f64 {
                 true => away[(0, 0)],
                 false => away.determinant(),
             };
-            if determinant == 0.0 { 0.0 } else { determinant.signum() }
+            if determinant == 0.0 {
+                0.0
+            } else {
+                determinant.signum()
+            }
         })
     };
     let sum: f64 = judged.iter().map(sign).sum();
     if sum == 0.0 { 0.0 } else { sum.signum() }
 }
 
-/// The places where a branch changes without the folds that only its balance has, and the parameters of these.
-pub(super) fn without_ripple(found: Vec<Found>, nodes: &[Node], judged: &[Judged]) -> (Vec<Found>, Vec<f64>) {
+/// The places where a branch changes without the folds that only its balance has, and the
+/// parameters of these.
+pub(super) fn without_ripple(
+    found: Vec<Found>,
+    nodes: &[Node],
+    judged: &[Judged],
+) -> (Vec<Found>, Vec<f64>) {
     let (mut kept, mut left_out) = (Vec::new(), Vec::new());
     let mut from = 0;
     let mut rest = found.into_iter().peekable();
@@ -84,8 +95,9 @@ pub(super) fn without_ripple(found: Vec<Found>, nodes: &[Node], judged: &[Judged
         match of_true_motion(&folds, nodes, judged, [from, to]) {
             Some(real) => {
                 let parameters = folds.iter().map(|(_, _, node)| node.parameter);
-                let others =
-                    parameters.filter(|parameter| real.iter().all(|(_, _, node)| node.parameter != *parameter));
+                let others = parameters.filter(|parameter| {
+                    real.iter().all(|(_, _, node)| node.parameter != *parameter)
+                });
                 left_out.extend(others);
                 kept.extend(real);
             }
@@ -97,10 +109,17 @@ pub(super) fn without_ripple(found: Vec<Found>, nodes: &[Node], judged: &[Judged
     (kept, left_out)
 }
 
-/// The folds of the true motion in place of these of a balance, on a part of a branch without crossings; nothing where these are they, or
-/// where the true motions do not tell. On either side of a fold of the true motion det(1 - M) has one sign each: where the balance turns
-/// more often than the sign, its folds are as many as the sign changes, each where the branch comes farthest in between.
-fn of_true_motion(folds: &[Found], nodes: &[Node], judged: &[Judged], [from, to]: [usize; 2]) -> Option<Vec<Found>> {
+/// The folds of the true motion in place of these of a balance, on a part of a branch without
+/// crossings; nothing where these are they, or where the true motions do not tell. On either side
+/// of a fold of the true motion det(1 - M) has one sign each: where the balance turns more often
+/// than the sign, its folds are as many as the sign changes, each where the branch comes farthest
+/// in between.
+fn of_true_motion(
+    folds: &[Found],
+    nodes: &[Node],
+    judged: &[Judged],
+    [from, to]: [usize; 2],
+) -> Option<Vec<Found>> {
     // Before the first fold, between one and the next, behind the last.
     let begins = std::iter::once(from).chain(folds.iter().map(|fold| fold.0 + 1));
     let ends = folds.iter().map(|fold| fold.0 + 1).chain([to]);
@@ -125,10 +144,17 @@ fn of_true_motion(folds: &[Found], nodes: &[Node], judged: &[Judged], [from, to]
     let mut direction = nodes.get(from)?.parameter_slope().signum();
     let mut real = Vec::new();
     for index in 0..turns.len() {
-        let begin = index.checked_sub(1).map_or(from, |before| folds[turns[before]].0 + 1);
-        let end = turns.get(index + 1).map_or(to, |behind| folds[*behind].0 + 1);
-        let points = (begin..end).filter_map(|index| Some((index, BifurcationKind::Fold, nodes.get(index)?)));
-        let places = folds.iter().map(|(index, kind, node)| (*index, *kind, node));
+        let begin = index
+            .checked_sub(1)
+            .map_or(from, |before| folds[turns[before]].0 + 1);
+        let end = turns
+            .get(index + 1)
+            .map_or(to, |behind| folds[*behind].0 + 1);
+        let points = (begin..end)
+            .filter_map(|index| Some((index, BifurcationKind::Fold, nodes.get(index)?)));
+        let places = folds
+            .iter()
+            .map(|(index, kind, node)| (*index, *kind, node));
         let places = places.filter(|(index, _, _)| (begin..end).contains(index));
         let ahead = |node: &Node| direction * node.parameter;
         let farthest = points

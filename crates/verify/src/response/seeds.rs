@@ -20,9 +20,12 @@ pub(super) struct Seed {
 }
 
 impl Asked<'_> {
-    /// Motions to begin with: where simulations settle, from rest and from a ring of starts as large as the motions of the first
-    /// branches; and what did not repeat itself.
-    pub(super) fn seeds(&self, harmonics: usize) -> Result<(Vec<Seed>, Vec<Elsewhere>), ResponseError> {
+    /// Motions to begin with: where simulations settle, from rest and from a ring of starts as
+    /// large as the motions of the first branches; and what did not repeat itself.
+    pub(super) fn seeds(
+        &self,
+        harmonics: usize,
+    ) -> Result<(Vec<Seed>, Vec<Elsewhere>), ResponseError> {
         /// Values of the parameter at which simulations begin.
         const VALUES: u32 = 5;
         const RINGS: [f64; 2] = [0.5, 1.3];
@@ -31,17 +34,24 @@ impl Asked<'_> {
         }
         let [low, high] = self.question.range;
         let balance = Balance::new(&self.driven, harmonics);
-        /// Without damping the ends and the middle are where somebody would put a resonance, at which there is no motion.
+        /// Without damping the ends and the middle are where somebody would put a resonance, at
+        /// which there is no motion.
         const OFF: f64 = 0.382;
         let part = |index: u32| match self.driven.undamped {
             true => (f64::from(index) + OFF) / f64::from(VALUES),
             false => f64::from(index) / f64::from(VALUES - 1),
         };
-        let values: Vec<f64> = (0..VALUES).map(|index| low + (high - low) * part(index)).collect();
+        let values: Vec<f64> = (0..VALUES)
+            .map(|index| low + (high - low) * part(index))
+            .collect();
         let mut seeds = Vec::new();
         let mut elsewhere = Vec::new();
         let mut budget = self.budget();
-        let rings = if self.driven.undamped { 0 } else { 4 * RINGS.len() };
+        let rings = if self.driven.undamped {
+            0
+        } else {
+            4 * RINGS.len()
+        };
         self.question.progress.begin(values.len() * (1 + rings));
         let mut size = 0.0_f64;
         for parameter in &values {
@@ -68,7 +78,10 @@ impl Asked<'_> {
             false => vec![],
         };
         for path in &first {
-            for (found, parameter) in self.walk(&seeds, size).returns(&balance, path, self.surroundings()) {
+            for (found, parameter) in
+                self.walk(&seeds, size)
+                    .returns(&balance, path, self.surroundings())
+            {
                 seeds.push(self.seed(&balance, &found, parameter));
                 size = size.max(balance.extent(&found));
             }
@@ -89,7 +102,8 @@ impl Asked<'_> {
                         return Ok((seeds, elsewhere));
                     }
                     self.question.progress.advance();
-                    let (sine, cosine) = (std::f64::consts::FRAC_PI_2 * (f64::from(turn) + 0.3)).sin_cos();
+                    let (sine, cosine) =
+                        (std::f64::consts::FRAC_PI_2 * (f64::from(turn) + 0.3)).sin_cos();
                     let start = [radius * size * cosine, -radius * size * omega * sine];
                     elsewhere.extend(self.settled(start, *parameter, &mut seeds, &mut budget));
                 }
@@ -103,15 +117,24 @@ impl Asked<'_> {
         Ok((seeds, elsewhere))
     }
 
-    /// The motion that a balance finds from rest at a place, and its extent; nothing where it finds none.
-    fn balanced_from_rest(&self, balance: &Balance, place: f64, parameter: f64) -> Option<(Seed, f64)> {
+    /// The motion that a balance finds from rest at a place, and its extent; nothing where it finds
+    /// none.
+    fn balanced_from_rest(
+        &self,
+        balance: &Balance,
+        place: f64,
+        parameter: f64,
+    ) -> Option<(Seed, f64)> {
         if !self.driven.is_balanced() {
             return None;
         }
         let mut still = DVector::zeros(balance.size());
         still[0] = place;
         let found = balance.solve(&still, parameter)?;
-        Some((self.seed(balance, &found, parameter), balance.extent(&found)))
+        Some((
+            self.seed(balance, &found, parameter),
+            balance.extent(&found),
+        ))
     }
 
     /// A motion of a balance to begin with.
@@ -129,13 +152,22 @@ impl Asked<'_> {
         }
     }
 
-    /// How far beyond the range branches are followed that might come back: not to where the parameter has another sign.
+    /// How far beyond the range branches are followed that might come back: not to where the
+    /// parameter has another sign.
     fn surroundings(&self) -> [f64; 2] {
         const TIMES: f64 = 4.0;
         let [low, high] = self.question.range;
         let beyond = TIMES * (high - low).max(low.abs()).max(high.abs());
-        let lowest = if low >= 0.0 { low / TIMES } else { low - beyond };
-        let highest = if high <= 0.0 { high / TIMES } else { high + beyond };
+        let lowest = if low >= 0.0 {
+            low / TIMES
+        } else {
+            low - beyond
+        };
+        let highest = if high <= 0.0 {
+            high / TIMES
+        } else {
+            high + beyond
+        };
         [lowest, highest]
     }
 

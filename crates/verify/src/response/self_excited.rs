@@ -4,9 +4,10 @@
 //! P(x): the next turning point on the same side        P(x) = x: a cycle
 //! ```
 //!
-//! Every cycle turns right of a place of rest, so that starts there, from near to far, at several values of the parameter, forward and
-//! backward in time, find those that attract and those that repel (A. A. Andronov, A. A. Vitt and S. E. Khaikin, *Theory of Oscillators*,
-//! Pergamon 1966, chapter V).
+//! Every cycle turns right of a place of rest, so that starts there, from near to far, at several
+//! values of the parameter, forward and backward in time, find those that attract and those that
+//! repel (A. A. Andronov, A. A. Vitt and S. E. Khaikin, *Theory of Oscillators*, Pergamon 1966,
+//! chapter V).
 
 use super::backbone::places_of_rest;
 use super::jump::{Until, follow};
@@ -58,7 +59,10 @@ impl Asked<'_> {
         let mut found: Vec<f64> = Vec::new();
         for size in SIZES {
             for place in places_of_rest(&self.driven, parameter, size) {
-                if !found.iter().any(|known| (known - place).abs() <= 1e-9 * size) {
+                if !found
+                    .iter()
+                    .any(|known| (known - place).abs() <= 1e-9 * size)
+                {
                     found.push(place);
                 }
             }
@@ -83,7 +87,8 @@ impl Asked<'_> {
                 }
                 const SAMPLES: usize = 512;
                 let around = path.samples(SAMPLES + 1).take(SAMPLES);
-                let mut positions: Vec<f64> = around.map(|state| place + radius * state.x).collect();
+                let mut positions: Vec<f64> =
+                    around.map(|state| place + radius * state.x).collect();
                 if backward {
                     positions[1..].reverse();
                 }
@@ -98,7 +103,8 @@ impl Asked<'_> {
         }
     }
 
-    /// Adds the cycles that turn right of a place of rest where the force jumps on their way. What sticks cannot be followed backward.
+    /// Adds the cycles that turn right of a place of rest where the force jumps on their way. What
+    /// sticks cannot be followed backward.
     fn cycles_across_jumps(&self, place: f64, parameter: f64, seeds: &mut Vec<Seed>) {
         /// Beyond it a motion does not turn back.
         const LONGEST: f64 = 1e3;
@@ -115,10 +121,12 @@ impl Asked<'_> {
             let away = course.end[0] - place;
             (course.turned() && away > 0.0).then_some((course, away))
         };
-        let growth = |radius: f64| swing(radius, SEARCHED).map_or(f64::NAN, |(_, away)| away / radius - 1.0);
+        let growth =
+            |radius: f64| swing(radius, SEARCHED).map_or(f64::NAN, |(_, away)| away / radius - 1.0);
         for radius in fixed_radii(growth) {
             // A jump from growing to shrinking is no cycle.
-            let found = swing(radius, FOUND).filter(|(_, away)| (away / radius - 1.0).abs() <= 1e-4);
+            let found =
+                swing(radius, FOUND).filter(|(_, away)| (away / radius - 1.0).abs() <= 1e-4);
             if let Some((course, _)) = found {
                 seeds.push(Seed {
                     parameter,
@@ -135,7 +143,8 @@ impl Asked<'_> {
         (self.driven.force(&[place + radius, 0.0, 0.0, parameter]) / radius).sqrt()
     }
 
-    /// From rest right of a place to the next turning point there, in radii and in times of the pace; nothing where it does not turn.
+    /// From rest right of a place to the next turning point there, in radii and in times of the
+    /// pace; nothing where it does not turn.
     fn swing(
         &self,
         place: f64,
@@ -150,9 +159,16 @@ impl Asked<'_> {
         let pace = self.pace(place, radius, parameter);
         let speed = radius * pace * if backward { -1.0 } else { 1.0 };
         let scaled = |_: f64, x: f64, v: f64| {
-            -self.driven.force(&[place + radius * x, speed * v, 0.0, parameter]) / (radius * pace * pace)
+            -self
+                .driven
+                .force(&[place + radius * x, speed * v, 0.0, parameter])
+                / (radius * pace * pace)
         };
-        let start = State { t: 0.0, x: 1.0, v: 0.0 };
+        let start = State {
+            t: 0.0,
+            x: 1.0,
+            v: 0.0,
+        };
         let events = [
             Event::stop(|_, _, v| v).falling(),
             Event::stop(|_, x, _| GONE - x.abs()).falling(),

@@ -1,7 +1,9 @@
-//! Steady motions by the slow equations of a method, beside the branches that were found and judged.
+//! Steady motions by the slow equations of a method, beside the branches that were found and
+//! judged.
 //!
-//! In: a [`Response`] and a [`Solution`] with slow equations of the primary resonance, such as that of multiple scales. Out: its steady
-//! motions over the range, and how far they are from the stable points of the branches, each of which has its true motion beside it.
+//! In: a [`Response`] and a [`Solution`] with slow equations of the primary resonance, such as that
+//! of multiple scales. Out: its steady motions over the range, and how far they are from the stable
+//! points of the branches, each of which has its true motion beside it.
 
 use super::{Question, Response};
 use crate::solution::Solution;
@@ -9,7 +11,8 @@ use crate::solution::response::{SteadyMotions, SteadyState};
 use crate::symbol::Symbol;
 use crate::verify::Verdict;
 
-/// Parts of its amplitude by which a steady motion may differ: beyond it is another one, as where a branch folds back too soon.
+/// Parts of its amplitude by which a steady motion may differ: beyond it is another one, as where a
+/// branch folds back too soon.
 const OTHER: f64 = 0.3;
 
 /// The part of the stable points that may be missing, for folds lie where they lie.
@@ -25,14 +28,16 @@ pub struct SlowResponse {
     pub solution: Box<Solution>,
     /// The steady motions, by the parameter, the largest first.
     pub states: Vec<SlowState>,
-    /// The largest error of the amplitude at the stable points of the branches, over the amplitude there.
+    /// The largest error of the amplitude at the stable points of the branches, over the amplitude
+    /// there.
     pub error: Option<f64>,
     /// Where that is.
     pub worst: Option<f64>,
     /// Stable points of the branches near which the slow equations have no stable motion.
     pub missing: usize,
     /// Values of the parameter at which steady motions of the truncated slow equations are
-    /// [left out](Solution::steady_motions), the lowest and the highest amplitude of these; `None` where there are none.
+    /// [left out](Solution::steady_motions), the lowest and the highest amplitude of these; `None`
+    /// where there are none.
     pub spurious: Option<Spurious>,
     /// How many stable points there are.
     pub points: usize,
@@ -119,7 +124,9 @@ impl Response {
         let points = self.branches.iter().flat_map(|branch| &branch.points);
         for point in points.filter(|point| point.stable == Some(true)) {
             count += 1;
-            let stable = motions_at(question, &solution, point.parameter).states.into_iter();
+            let stable = motions_at(question, &solution, point.parameter)
+                .states
+                .into_iter();
             let apart = stable
                 .filter(SteadyState::is_stable)
                 .map(|state| (state.amplitude - point.amplitude).abs())
@@ -136,7 +143,10 @@ impl Response {
         self.slow = Some(SlowResponse {
             solution: Box::new(solution),
             states,
-            verdict: Verdict::of(MISSING * missing <= count && error.is_some_and(|error| error <= question.tolerance)),
+            verdict: Verdict::of(
+                MISSING * missing <= count
+                    && error.is_some_and(|error| error <= question.tolerance),
+            ),
             error,
             worst,
             missing,

@@ -4,10 +4,11 @@
 //! M' = [0 1; -f_x -f_v] M,  M(0) = 1:   the multipliers are the eigenvalues of M(T),   det M(T) = exp(-integral of f_v over T)
 //! ```
 //!
-//! In: a start near a motion of period T. Out: the motion itself, found by shooting (Newton's method for the start that comes back
-//! after a period), its first harmonic and its peaks, and its multipliers; it is stable if both lie inside the unit circle (A. H.
-//! Nayfeh and B. Balachandran, *Applied Nonlinear Dynamics*, Wiley 1995, chapters 3 and 6). Everything is integrated by Runge-Kutta on
-//! the equation as it was given; of the balance only the start is taken.
+//! In: a start near a motion of period T. Out: the motion itself, found by shooting (Newton's
+//! method for the start that comes back after a period), its first harmonic and its peaks, and its
+//! multipliers; it is stable if both lie inside the unit circle (A. H. Nayfeh and B.
+//! Balachandran, *Applied Nonlinear Dynamics*, Wiley 1995, chapters 3 and 6). Everything is integrated by
+//! Runge-Kutta on the equation as it was given; of the balance only the start is taken.
 
 use nalgebra::{Matrix2, Vector2};
 use num_complex::Complex;
@@ -25,12 +26,14 @@ pub(super) const SAMPLES: usize = 256;
 pub struct Floquet {
     /// M(T).
     pub monodromy: Matrix2<f64>,
-    /// Whether nothing drives the motion: M(T) is then diagonal, and its second multiplier, along the motion, is 1.
+    /// Whether nothing drives the motion: M(T) is then diagonal, and its second multiplier, along
+    /// the motion, is 1.
     pub self_excited: bool,
 }
 
 impl Floquet {
-    /// The eigenvalues of M(T), the larger first; of a self-excited motion the one that decides, then the one that is 1.
+    /// The eigenvalues of M(T), the larger first; of a self-excited motion the one that decides,
+    /// then the one that is 1.
     pub fn multipliers(&self) -> [Complex<f64>; 2] {
         if self.self_excited {
             return [self.monodromy[(0, 0)], 1.0].map(|value| Complex::new(value, 0.0));
@@ -43,7 +46,11 @@ impl Floquet {
         }
         // The smaller one by the product, which does not cancel.
         let large = half + half.signum() * square.sqrt();
-        let small = if large == 0.0 { 0.0 } else { determinant / large };
+        let small = if large == 0.0 {
+            0.0
+        } else {
+            determinant / large
+        };
         [Complex::new(large, 0.0), Complex::new(small, 0.0)]
     }
 
@@ -104,8 +111,14 @@ fn monodromy(end: &[f64; 6]) -> Floquet {
     }
 }
 
-/// The periodic motion whose start is near this one; nothing where shooting does not settle, or goes far away.
-pub fn periodic_motion(driven: &Driven, guess: [f64; 2], parameter: f64, size: f64) -> Option<TrueMotion> {
+/// The periodic motion whose start is near this one; nothing where shooting does not settle, or
+/// goes far away.
+pub fn periodic_motion(
+    driven: &Driven,
+    guess: [f64; 2],
+    parameter: f64,
+    size: f64,
+) -> Option<TrueMotion> {
     const MOST: usize = 12;
     /// Parts of the size of the motion by which the start may move.
     const FAR: f64 = 0.3;
@@ -118,9 +131,12 @@ pub fn periodic_motion(driven: &Driven, guess: [f64; 2], parameter: f64, size: f
         let end = path.end;
         let floquet = monodromy(&end);
         let missed = Vector2::new(end[0] - start[0], end[1] - start[1]);
-        let step = (Matrix2::identity() - floquet.monodromy).lu().solve(&missed)?;
+        let step = (Matrix2::identity() - floquet.monodromy)
+            .lu()
+            .solve(&missed)?;
         let moved = measure([step[0], step[1]]);
-        // Near a fold rounding is magnified: what does not shrink any more has come as near as it will.
+        // Near a fold rounding is magnified: what does not shrink any more has come as near as it
+        // will.
         let settled = moved <= 1e-6 * size && moved >= 0.5 * before;
         if settled || moved <= 1e-9 * size || measure([missed[0], missed[1]]) <= 1e-12 * size {
             return Some(described(&path, start, (omega, floquet)));
@@ -135,7 +151,8 @@ pub fn periodic_motion(driven: &Driven, guess: [f64; 2], parameter: f64, size: f
     None
 }
 
-/// The multipliers of a motion that is given with its frequency, not followed: `motion` has position and velocity at a phase.
+/// The multipliers of a motion that is given with its frequency, not followed: `motion` has
+/// position and velocity at a phase.
 pub fn multipliers_along(
     driven: &Driven,
     parameter: f64,
@@ -144,7 +161,8 @@ pub fn multipliers_along(
 ) -> Option<Floquet> {
     let rates = |t: f64, y: &[f64; 4], rates: &mut [f64; 4]| {
         let [position, velocity] = motion(omega * t);
-        let [by_position, by_velocity, _] = driven.slopes(&[position, velocity, omega * t, parameter]);
+        let [by_position, by_velocity, _] =
+            driven.slopes(&[position, velocity, omega * t, parameter]);
         *rates = [
             y[1],
             -by_position * y[0] - by_velocity * y[1],
@@ -195,11 +213,13 @@ pub fn first_harmonic(positions: &[f64]) -> [f64; 2] {
     sums.map(|sum| 2.0 * sum / count)
 }
 
-/// Half of the way from the lowest to the highest point of a period in equal steps, by the parabola through three of them.
+/// Half of the way from the lowest to the highest point of a period in equal steps, by the parabola
+/// through three of them.
 pub fn half_of_peak_to_peak(positions: &[f64]) -> f64 {
     let count = positions.len();
     let top = |sign: f64| {
-        let highest = (0..count).max_by(|one, other| (sign * positions[*one]).total_cmp(&(sign * positions[*other])));
+        let highest = (0..count)
+            .max_by(|one, other| (sign * positions[*one]).total_cmp(&(sign * positions[*other])));
         let Some(middle) = highest else {
             return 0.0;
         };
@@ -214,7 +234,8 @@ pub fn half_of_peak_to_peak(positions: &[f64]) -> f64 {
     0.5 * (top(1.0) + top(-1.0))
 }
 
-/// What several simulations share: evaluations of the force that they may take, and who may ask them to end.
+/// What several simulations share: evaluations of the force that they may take, and who may ask
+/// them to end.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     /// Evaluations that are left.
@@ -236,8 +257,8 @@ impl Budget {
 pub struct Settled {
     /// Position and velocity at phase zero.
     pub state: [f64; 2],
-    /// The periods of the motion after which it comes back, or would where what has not died out yet is gone; nothing where it does not
-    /// within eight.
+    /// The periods of the motion after which it comes back, or would where what has not died out
+    /// yet is gone; nothing where it does not within eight.
     pub returns_after: Option<usize>,
     /// Its positions over the last period, at equal steps.
     pub positions: Vec<f64>,
@@ -260,7 +281,11 @@ impl Period {
 
     fn positions(&self, count: usize) -> Vec<f64> {
         match self {
-            Self::One(path) => path.samples(count + 1).take(count).map(|point| point.y[0]).collect(),
+            Self::One(path) => path
+                .samples(count + 1)
+                .take(count)
+                .map(|point| point.y[0])
+                .collect(),
             Self::Legs(course) => course.positions(count),
         }
     }
@@ -273,9 +298,9 @@ impl Period {
     }
 }
 
-/// Follows the equation as it was given from a start, period by period, until it repeats itself to `closely` (of its size), or
-/// `most` periods are over; the tolerance of a step is a thousandth of that. Nothing where it cannot be followed: it escapes, or the
-/// `budget` is spent.
+/// Follows the equation as it was given from a start, period by period, until it repeats itself to
+/// `closely` (of its size), or `most` periods are over; the tolerance of a step is a thousandth of
+/// that. Nothing where it cannot be followed: it escapes, or the `budget` is spent.
 pub fn settle(
     driven: &Driven,
     start: [f64; 2],
@@ -286,7 +311,8 @@ pub fn settle(
     /// Periods in which a repetition is looked for.
     const LONGEST: usize = 8;
     const BOUND: f64 = 1e8;
-    /// Periods over which the largest difference is taken, and the part of it that may be left a quarter of the run later.
+    /// Periods over which the largest difference is taken, and the part of it that may be left a
+    /// quarter of the run later.
     const WINDOW: usize = 16;
     const FALLING: f64 = 0.9;
     let omega = driven.frequency_at(parameter);
@@ -302,7 +328,13 @@ pub fn settle(
         let begin = states.last().copied()?;
         let size = begin[0].abs().max(begin[1].abs() / omega);
         let path = match driven.jumps() > 0 {
-            true => Period::Legs(follow(driven, begin, parameter, Until::Time(period), &settings(size))?),
+            true => Period::Legs(follow(
+                driven,
+                begin,
+                parameter,
+                Until::Time(period),
+                &settings(size),
+            )?),
             false => {
                 let begin = Point { t: 0.0, y: begin };
                 Period::One(integrate_first_order(rates, begin, period, &[], &settings(size)).ok()?)
@@ -314,7 +346,9 @@ pub fn settle(
         }
         let moved = (end[0] - begin[0]).hypot((end[1] - begin[1]) / omega);
         let away = path.positions(32).into_iter().chain([end[0]]);
-        let extent = away.fold(0.0_f64, |most, position| most.max((position - begin[0]).abs()));
+        let extent = away.fold(0.0_f64, |most, position| {
+            most.max((position - begin[0]).abs())
+        });
         states.push(end);
         last = Some(path);
         // A motion that stands still is one that repeats itself.
@@ -336,11 +370,13 @@ pub fn settle(
     };
     let end = states.len() - 1;
     let repeats = |count: usize| apart(end, count).is_some_and(|apart| apart <= 1e-3 * extent);
-    // What dies out slowly beside a motion comes back to itself as well, where its frequency is a fraction of the drive's.
+    // What dies out slowly beside a motion comes back to itself as well, where its frequency is a
+    // fraction of the drive's.
     let dies_out = |count: usize| {
         let around = |quarter: usize| {
             let last = end * quarter / 4;
-            let differences = (last.saturating_sub(WINDOW)..=last).filter_map(|index| apart(index, count));
+            let differences =
+                (last.saturating_sub(WINDOW)..=last).filter_map(|index| apart(index, count));
             differences.fold(0.0_f64, f64::max)
         };
         let sizes = [1, 2, 3, 4].map(around);

@@ -1,15 +1,18 @@
-//! Branches of motions across jumps of the force that harmonic balance does not take: by the map of a period.
+//! Branches of motions across jumps of the force that harmonic balance does not take: by the map of
+//! a period.
 //!
 //! ```text
 //! P(y; p): position and velocity a period later,   P(y; p) - y = 0        [M - 1  P_p; y'^T  p'] [dy; dp] = -[P - y; 0]
 //! ```
 //!
-//! A sum of waves is smooth and has no rest in it, so that harmonic balance is lost where sticking begins. The map of a period, followed
-//! from event to event ([`jump`](super::jump)), is continuous there, and its derivative M is what the legs and their saltation matrices
-//! make it: of what sticks one multiplier is zero. Pseudo-arclength goes on with it (R. I. Leine and H. Nijmeijer, *Dynamics and
-//! Bifurcations of Non-Smooth Mechanical Systems*, Springer 2004, chapter 8). Where nothing drives the motion the map goes from one
-//! largest displacement to the next, and its derivative is the multiplier. In: a periodic motion. Out: the branch through it, each
-//! point with the harmonics of the true motion.
+//! A sum of waves is smooth and has no rest in it, so that harmonic balance is lost where sticking
+//! begins. The map of a period, followed from event to event ([`jump`](super::jump)), is continuous
+//! there, and its derivative M is what the legs and their saltation matrices make it: of what
+//! sticks one multiplier is zero. Pseudo-arclength goes on with it (R. I. Leine and H.
+//! Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems*, Springer 2004, chapter 8). Where
+//! nothing drives the motion the map goes from one largest displacement to the next, and its
+//! derivative is the multiplier. In: a periodic motion. Out: the branch through it, each point with
+//! the harmonics of the true motion.
 
 use nalgebra::{DVector, Matrix2, Matrix3, Vector3};
 
@@ -18,7 +21,9 @@ use super::branches::largest;
 use super::continuation::{BranchEnd, Node, Path};
 use super::jump::{Course, Until, follow};
 use super::seeds::Seed;
-use super::stability::{Floquet, SAMPLES, TOLERANCE, TrueMotion, first_harmonic, half_of_peak_to_peak, options};
+use super::stability::{
+    Floquet, SAMPLES, TOLERANCE, TrueMotion, first_harmonic, half_of_peak_to_peak, options,
+};
 use super::{Asked, LONGEST_STEP, MOST_BRANCHES};
 
 /// Position, velocity and parameter, each in its size.
@@ -45,7 +50,11 @@ impl<'a> PeriodMap<'a> {
         let size = size.max(1e-12);
         Self {
             asked,
-            sizes: Vector3::new(size, size * asked.driven.frequency_at(parameter), high - low),
+            sizes: Vector3::new(
+                size,
+                size * asked.driven.frequency_at(parameter),
+                high - low,
+            ),
         }
     }
 
@@ -66,8 +75,15 @@ impl<'a> PeriodMap<'a> {
         let driven = &self.asked.driven;
         let options = options(self.sizes[0].max(start[0].abs()), TOLERANCE);
         if driven.self_excited {
-            let mut course = follow(driven, [start[0], 0.0], parameter, Until::Turn(LONGEST), &options)?;
-            // What is beside the start in the velocity is no other start; what is beside the end along the motion is the same end.
+            let mut course = follow(
+                driven,
+                [start[0], 0.0],
+                parameter,
+                Until::Turn(LONGEST),
+                &options,
+            )?;
+            // What is beside the start in the velocity is no other start; what is beside the end
+            // along the motion is the same end.
             let [x, _, by_start, ..] = course.end;
             course.end = [x, 0.0, by_start, 0.0, 0.0, 0.0];
             return course.turned().then_some(course);
@@ -88,7 +104,8 @@ impl<'a> PeriodMap<'a> {
     /// dP/dp, by differences.
     fn by_parameter(&self, at: &Scaled) -> Option<[f64; 2]> {
         const STEP: f64 = 1e-5;
-        let [above, below] = [STEP, -STEP].map(|step| self.period(&(at + Vector3::new(0.0, 0.0, step))));
+        let [above, below] =
+            [STEP, -STEP].map(|step| self.period(&(at + Vector3::new(0.0, 0.0, step))));
         let (above, below) = (above?.end, below?.end);
         Some([0, 1].map(|index| (above[index] - below[index]) / (2.0 * STEP * self.sizes[index])))
     }
@@ -110,7 +127,8 @@ impl<'a> PeriodMap<'a> {
         )
     }
 
-    /// Newton's method at right angles to a direction: the motion, its tangent turned as the direction.
+    /// Newton's method at right angles to a direction: the motion, its tangent turned as the
+    /// direction.
     fn corrected(&self, guess: &Scaled, direction: &Scaled) -> Option<Shot> {
         const MOST: usize = 14;
         const SETTLED: f64 = 1e-9;
@@ -154,13 +172,19 @@ impl<'a> PeriodMap<'a> {
         self.corrected(&self.scaled(start, parameter), &Vector3::new(0.0, 0.0, 1.0))
     }
 
-    /// Motion after motion in the direction of the tangent, the first left out, and why there are no more. `met` says where motions of
-    /// another branch are met.
-    fn walk(&self, first: &Shot, met: &dyn Fn(&Node) -> bool, balance: &Balance) -> (Vec<Shot>, BranchEnd) {
+    /// Motion after motion in the direction of the tangent, the first left out, and why there are
+    /// no more. `met` says where motions of another branch are met.
+    fn walk(
+        &self,
+        first: &Shot,
+        met: &dyn Fn(&Node) -> bool,
+        balance: &Balance,
+    ) -> (Vec<Shot>, BranchEnd) {
         const FIRST: f64 = 0.2;
         const SHORTEST: f64 = 1e-7;
         const MOST: usize = 500;
-        /// Cosine of the angle between tangents: a branch has a corner where a motion begins to stick.
+        /// Cosine of the angle between tangents: a branch has a corner where a motion begins to
+        /// stick.
         const SHARPEST: f64 = 0.5;
         /// Part of a period.
         const ALL: f64 = 1.0 - 1e-9;
@@ -179,7 +203,9 @@ impl<'a> PeriodMap<'a> {
             let guess = here.at + here.tangent * step;
             let found = self.corrected(&guess, &here.tangent).filter(|shot| {
                 let moved = (shot.at - here.at).norm();
-                shot.tangent.dot(&here.tangent) > SHARPEST && moved < 1.5 * step && shot.course.stuck() < ALL
+                shot.tangent.dot(&here.tangent) > SHARPEST
+                    && moved < 1.5 * step
+                    && shot.course.stuck() < ALL
             });
             let Some(shot) = found else {
                 step *= 0.5;
@@ -193,7 +219,11 @@ impl<'a> PeriodMap<'a> {
                 continue;
             };
             if !(bounds[0]..=bounds[1]).contains(&shot.at[2]) {
-                let bound = if shot.at[2] < bounds[0] { bounds[0] } else { bounds[1] };
+                let bound = if shot.at[2] < bounds[0] {
+                    bounds[0]
+                } else {
+                    bounds[1]
+                };
                 if (bound - here.at[2]).abs() <= 1e-9 {
                     return (shots, BranchEnd::Range);
                 }
@@ -207,7 +237,10 @@ impl<'a> PeriodMap<'a> {
             if shots.len() > 8 && passes(&first.at, &here.at, &shot.at) {
                 return (shots, BranchEnd::Closed);
             }
-            if shot.course.stuck() == 0.0 && self.asked.driven.is_balanced() && met(&self.node(balance, &shot)) {
+            if shot.course.stuck() == 0.0
+                && self.asked.driven.is_balanced()
+                && met(&self.node(balance, &shot))
+            {
                 return (shots, BranchEnd::Crossing);
             }
             shots.push(shot);
@@ -248,7 +281,8 @@ impl<'a> PeriodMap<'a> {
     }
 }
 
-/// Leaves out what a branch has of motions that are no motions: the mass rests, and friction bears what drives it.
+/// Leaves out what a branch has of motions that are no motions: the mass rests, and friction bears
+/// what drives it.
 fn cut_rest(balance: &Balance, path: &mut Path, size: f64) {
     const NOTHING: f64 = 1e-5;
     let moves = |node: &Node| balance.extent(&node.coefficients) > NOTHING * size;
@@ -277,9 +311,15 @@ fn passes(target: &Scaled, from: &Scaled, to: &Scaled) -> bool {
 }
 
 impl Asked<'_> {
-    /// Follows every branch on from where harmonic balance has lost it because the motion begins to stick, and adds those on which it sticks
-    /// all along.
-    pub(super) fn follow_sticking(&self, balance: &Balance, seeds: &[Seed], paths: &mut Vec<Path>, size: f64) {
+    /// Follows every branch on from where harmonic balance has lost it because the motion begins to
+    /// stick, and adds those on which it sticks all along.
+    pub(super) fn follow_sticking(
+        &self,
+        balance: &Balance,
+        seeds: &[Seed],
+        paths: &mut Vec<Path>,
+        size: f64,
+    ) {
         if self.driven.jumps() == 0 {
             return;
         }
@@ -308,7 +348,8 @@ impl Asked<'_> {
                 continue;
             };
             let (start, _) = map.start(&shot.at);
-            let known = |path: &Path| self.lies_on(balance, path, start, seed.parameter, map.sizes[0]);
+            let known =
+                |path: &Path| self.lies_on(balance, path, start, seed.parameter, map.sizes[0]);
             // What rests all the time is no motion.
             let own = shot.course.stuck() > 0.0 || !self.driven.is_balanced();
             if own && shot.course.extent() > 1e-6 * size && !paths.iter().any(known) {
@@ -318,8 +359,8 @@ impl Asked<'_> {
         }
     }
 
-    /// A branch of self-excited motions with its end in the place where they are born from rest, if it has one: motions too small to be told
-    /// from rest are left out.
+    /// A branch of self-excited motions with its end in the place where they are born from rest, if
+    /// it has one: motions too small to be told from rest are left out.
     fn ended_at_rest(&self, balance: &Balance, seeds: &[Seed], mut path: Path) -> Path {
         /// Of the largest motion.
         const SMALL: f64 = 1e-3;
@@ -344,7 +385,10 @@ impl Asked<'_> {
                 .last()
                 .and_then(|last| walk.rest_beside(balance, last, last.parameter));
             if let Some(rest) = rest {
-                path.nodes.push(Node { truth: None, ..rest });
+                path.nodes.push(Node {
+                    truth: None,
+                    ..rest
+                });
                 path.ends[side] = BranchEnd::Rest;
             }
             if side == 0 {
@@ -355,7 +399,13 @@ impl Asked<'_> {
     }
 
     /// The branch through a motion that sticks.
-    fn stuck_branch(&self, balance: &Balance, map: &PeriodMap, shot: Shot, paths: &[Path]) -> Option<Path> {
+    fn stuck_branch(
+        &self,
+        balance: &Balance,
+        map: &PeriodMap,
+        shot: Shot,
+        paths: &[Path],
+    ) -> Option<Path> {
         let met = |node: &Node| self.is_met(balance, paths, node);
         let (behind, last) = map.walk(&shot, &met, balance);
         let (before, first) = match last {
@@ -383,7 +433,13 @@ impl Asked<'_> {
     }
 
     /// Follows a branch on beyond one of its ends.
-    fn follow_on(&self, balance: &Balance, paths: &mut [Path], (index, side): (usize, usize), size: f64) {
+    fn follow_on(
+        &self,
+        balance: &Balance,
+        paths: &mut [Path],
+        (index, side): (usize, usize),
+        size: f64,
+    ) {
         /// Points at an end that harmonic balance may have led astray.
         const ASTRAY: usize = 40;
         let path = &paths[index];
@@ -392,12 +448,22 @@ impl Asked<'_> {
             _ => path.nodes.iter().rev().collect(),
         };
         let truth = |node: &Node| Some(self.judged(balance, node).1?.start);
-        let good = (0..nodes.len().saturating_sub(1).min(ASTRAY))
-            .find_map(|skipped| Some((skipped, truth(nodes[skipped])?, truth(nodes[skipped + 1])?)));
-        let Some((skipped, last, inner)) = good else { return };
+        let good = (0..nodes.len().saturating_sub(1).min(ASTRAY)).find_map(|skipped| {
+            Some((skipped, truth(nodes[skipped])?, truth(nodes[skipped + 1])?))
+        });
+        let Some((skipped, last, inner)) = good else {
+            return;
+        };
         let [at, beside] = [nodes[skipped], nodes[skipped + 1]];
-        let map = PeriodMap::new(self, balance.extent(&at.coefficients).max(0.1 * size), at.parameter);
-        let (last, inner) = (map.scaled(last, at.parameter), map.scaled(inner, beside.parameter));
+        let map = PeriodMap::new(
+            self,
+            balance.extent(&at.coefficients).max(0.1 * size),
+            at.parameter,
+        );
+        let (last, inner) = (
+            map.scaled(last, at.parameter),
+            map.scaled(inner, beside.parameter),
+        );
         let direction = last - inner;
         let length = direction.norm();
         if length.is_nan() || length <= 0.0 {
@@ -438,7 +504,9 @@ impl Asked<'_> {
 
     /// Whether a motion that does not stick lies on one of these branches.
     fn is_met(&self, balance: &Balance, paths: &[Path], node: &Node) -> bool {
-        let Some(truth) = node.truth else { return false };
+        let Some(truth) = node.truth else {
+            return false;
+        };
         let size = balance.extent(&node.coefficients);
         paths
             .iter()
@@ -446,8 +514,16 @@ impl Asked<'_> {
     }
 
     /// Whether a motion with this start lies on a branch.
-    fn lies_on(&self, balance: &Balance, path: &Path, start: [f64; 2], parameter: f64, size: f64) -> bool {
-        /// Parts of a motion by which a guess between two points may be off, and by which motions that are one may differ.
+    fn lies_on(
+        &self,
+        balance: &Balance,
+        path: &Path,
+        start: [f64; 2],
+        parameter: f64,
+        size: f64,
+    ) -> bool {
+        /// Parts of a motion by which a guess between two points may be off, and by which motions
+        /// that are one may differ.
         const NEAR: f64 = 0.25;
         const SAME: f64 = 1e-4;
         let omega = self.driven.frequency_at(parameter);
@@ -458,7 +534,8 @@ impl Asked<'_> {
                 return false;
             };
             let starts = [one, other].map(|node| node.begins(balance));
-            let guess = [0, 1].map(|index| starts[0][index] + part * (starts[1][index] - starts[0][index]));
+            let guess =
+                [0, 1].map(|index| starts[0][index] + part * (starts[1][index] - starts[0][index]));
             let map = PeriodMap::new(self, size, parameter);
             let truth = || map.at(guess, parameter).map(|shot| map.start(&shot.at).0);
             apart(guess) <= NEAR * size && truth().is_some_and(|truth| apart(truth) <= SAME * size)
@@ -466,8 +543,16 @@ impl Asked<'_> {
     }
 
     /// A motion between two of a branch of which one is known by shooting, at this part of the way.
-    pub(super) fn stuck_between(&self, balance: &Balance, from: &Node, to: &Node, part: f64) -> Option<Node> {
-        let size = balance.extent(&from.coefficients).max(balance.extent(&to.coefficients));
+    pub(super) fn stuck_between(
+        &self,
+        balance: &Balance,
+        from: &Node,
+        to: &Node,
+        part: f64,
+    ) -> Option<Node> {
+        let size = balance
+            .extent(&from.coefficients)
+            .max(balance.extent(&to.coefficients));
         let map = PeriodMap::new(self, size, from.parameter);
         let [start, end] = [from, to].map(|node| map.scaled(node.begins(balance), node.parameter));
         let way = end - start;

@@ -1,7 +1,8 @@
 //! Motions on which simulations have settled and that lie on no branch.
 //!
-//! In: the branches, and the motions to begin with. Out: those of them whose true motion, by shooting, is none that shooting finds from
-//! the branches: harmonic balance has not come to it, or has come to another one.
+//! In: the branches, and the motions to begin with. Out: those of them whose true motion, by
+//! shooting, is none that shooting finds from the branches: harmonic balance has not come to it, or
+//! has come to another one.
 
 use super::balance::Balance;
 use super::continuation::{Node, Path};
@@ -10,7 +11,8 @@ use super::seeds::Seed;
 use super::stability::{TOLERANCE, half_of_peak_to_peak, options, periodic_motion};
 use super::{Asked, Elsewhere, LONGEST_STEP};
 
-/// A motion at a value of the parameter, by its start and those of its images: begun a period of the drive later, or mirrored.
+/// A motion at a value of the parameter, by its start and those of its images: begun a period of
+/// the drive later, or mirrored.
 struct Motion {
     parameter: f64,
     starts: Vec<[f64; 2]>,
@@ -18,8 +20,15 @@ struct Motion {
 }
 
 impl Asked<'_> {
-    /// Where simulations have settled on motions that lie on none of these branches, each motion once.
-    pub(super) fn unfollowed(&self, balance: &Balance, paths: &[Path], seeds: &[Seed], size: f64) -> Vec<Elsewhere> {
+    /// Where simulations have settled on motions that lie on none of these branches, each motion
+    /// once.
+    pub(super) fn unfollowed(
+        &self,
+        balance: &Balance,
+        paths: &[Path],
+        seeds: &[Seed],
+        size: f64,
+    ) -> Vec<Elsewhere> {
         /// Of the largest motion: what moves less rests.
         const NOTHING: f64 = 1e-6;
         let mut known: Vec<Motion> = Vec::new();
@@ -33,11 +42,13 @@ impl Asked<'_> {
             }
             let (parameter, extent) = (seed.parameter, half_of_peak_to_peak(&seed.positions));
             // A simulation ends before it has settled for good.
-            let truth = periodic_motion(&self.driven, start, parameter, extent).filter(|_| extent > NOTHING * size);
+            let truth = periodic_motion(&self.driven, start, parameter, extent)
+                .filter(|_| extent > NOTHING * size);
             let Some(start) = truth.map(|truth| truth.start) else {
                 continue;
             };
-            let is_known = |motion: &Motion| motion.parameter == parameter && self.is_one(motion, start);
+            let is_known =
+                |motion: &Motion| motion.parameter == parameter && self.is_one(motion, start);
             if known.iter().any(is_known) {
                 continue;
             }
@@ -57,9 +68,12 @@ impl Asked<'_> {
         found
     }
 
-    /// The start of a motion, those a period of the drive later each, and those of its mirror images.
+    /// The start of a motion, those a period of the drive later each, and those of its mirror
+    /// images.
     fn images(&self, start: [f64; 2], parameter: f64, size: f64) -> Vec<[f64; 2]> {
-        let period = std::f64::consts::TAU / self.driven.frequency_at(parameter) / self.question.periods as f64;
+        let period = std::f64::consts::TAU
+            / self.driven.frequency_at(parameter)
+            / self.question.periods as f64;
         let settings = options(size, TOLERANCE);
         let after = |halves: usize| {
             let time = Until::Time(0.5 * halves as f64 * period);
@@ -82,7 +96,8 @@ impl Asked<'_> {
         })
     }
 
-    /// Whether a branch passes a motion, by the true motions that shooting finds from it at the same value of the parameter.
+    /// Whether a branch passes a motion, by the true motions that shooting finds from it at the
+    /// same value of the parameter.
     fn passes(&self, balance: &Balance, path: &Path, motion: &Motion) -> bool {
         let [low, high] = self.question.range;
         let parameter = motion.parameter;
@@ -92,8 +107,11 @@ impl Asked<'_> {
             self.is_one(motion, truth.map_or(guess, |truth| truth.start))
         };
         // A branch may end a little before an end of the range.
-        let ends = [path.nodes.first(), path.nodes.last()].into_iter().flatten();
-        let mut beside = ends.filter(|node| (node.parameter - parameter).abs() <= LONGEST_STEP * (high - low));
+        let ends = [path.nodes.first(), path.nodes.last()]
+            .into_iter()
+            .flatten();
+        let mut beside =
+            ends.filter(|node| (node.parameter - parameter).abs() <= LONGEST_STEP * (high - low));
         let between = |pair: &[Node]| {
             let [one, other] = pair else { return false };
             let Some(part) = one.part_of_way(other, parameter) else {

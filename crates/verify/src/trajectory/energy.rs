@@ -1,11 +1,13 @@
-//! The energy of an equation of motion: what has a potential, and the power of everything else, term by term.
+//! The energy of an equation of motion: what has a potential, and the power of everything else,
+//! term by term.
 //!
 //! ```text
 //! x'' + f = 0:   h = x'^2/2 + V(x),   dh/dt = -x' (f - V')
 //! ```
 //!
-//! Reference: H. Goldstein, *Classical Mechanics*, 2nd ed., section 2-6. Terms are those of the expanded force, but what stands inside a
-//! function or below a fraction stays as it was typed: `exp(-((t - 20)*1e5)^2)` written out would lose ten digits.
+//! Reference: H. Goldstein, *Classical Mechanics*, 2nd ed., section 2-6. Terms are those of the
+//! expanded force, but what stands inside a function or below a fraction stays as it was typed:
+//! `exp(-((t - 20)*1e5)^2)` written out would lose ten digits.
 
 use super::Energy;
 use crate::conservative::potential;
@@ -15,8 +17,8 @@ use crate::oscillator::Oscillator;
 use crate::symbol::{Symbol, fresh_stem};
 use num_traits::Signed as _;
 
-/// `x'^2/2 + V(x)`, V of the terms that have a potential in closed form, and the power of every other term; nothing for an inertia that
-/// depends on the position, whose energy is another.
+/// `x'^2/2 + V(x)`, V of the terms that have a potential in closed form, and the power of every
+/// other term; nothing for an inertia that depends on the position, whose energy is another.
 pub(super) fn of(oscillator: &Oscillator) -> Option<Energy> {
     let velocity = oscillator.velocity();
     let speed = Expr::from(velocity);
@@ -76,7 +78,11 @@ fn terms(force: &Expr, names: &[Symbol]) -> Result<Vec<Expr>, ExprError> {
         let back = |term: Expr, (name, part): &(Symbol, Expr)| term.substitute(*name, part);
         kept.iter().rev().try_fold(term.clone(), back)
     };
-    let typed: Vec<Expr> = outline.terms().iter().map(typed).collect::<Result<_, _>>()?;
+    let typed: Vec<Expr> = outline
+        .terms()
+        .iter()
+        .map(typed)
+        .collect::<Result<_, _>>()?;
     Ok(Expr::sum(typed)
         .terms()
         .iter()

@@ -1,4 +1,5 @@
-//! Dry friction that holds something: a coordinate at rest, a block on a belt that runs, two bodies that stick to each other.
+//! Dry friction that holds something: a coordinate at rest, a block on a belt that runs, two bodies
+//! that stick to each other.
 //!
 //! ```text
 //! y' = f(y, t; s_1, s_2, ...),  s_i = sgn(u_i),  u_i linear in the velocities
@@ -6,12 +7,14 @@
 //! released:           |s_i| grows through 1; from there on s_i is its sign, until u_i returns to zero
 //! ```
 //!
-//! (A. F. Filippov, *Differential Equations with Discontinuous Righthand Sides*, Kluwer 1988, chapter 2; several at a time: F. Pfeiffer,
-//! C. Glocker, *Multibody Dynamics with Unilateral Contacts*, Wiley 1996.) `H(u)` is `(1 + sgn(u))/2`. While u_i = 0 holds, one velocity
-//! is what the equation says of it and is not followed.
+//! (A. F. Filippov, *Differential Equations with Discontinuous Righthand Sides*, Kluwer 1988,
+//! chapter 2; several at a time: F. Pfeiffer, C. Glocker, *Multibody Dynamics with Unilateral
+//! Contacts*, Wiley 1996.) `H(u)` is `(1 + sgn(u))/2`. While u_i = 0 holds, one velocity is what
+//! the equation says of it and is not followed.
 //!
-//! At the onset of a slip u_i and its rate are both zero, so that rounding decides in which direction u_i leaves its zero. Therefore only
-//! crossings in one direction end a stretch, and each such event has a second one at a level that rounding does not reach.
+//! At the onset of a slip u_i and its rate are both zero, so that rounding decides in which
+//! direction u_i leaves its zero. Therefore only crossings in one direction end a stretch, and each
+//! such event has a second one at a level that rounding does not reach.
 
 use std::collections::BTreeMap;
 
@@ -28,7 +31,8 @@ const AT_REST: f64 = 1e-9;
 /// The force that rounding and the steps leave of zero, in parts of the friction.
 const ROUNDING: f64 = 1e-9;
 
-/// The speed that they leave of zero at the onset of a slip, in parts of the change that friction makes in a unit of time.
+/// The speed that they leave of zero at the onset of a slip, in parts of the change that friction
+/// makes in a unit of time.
 const UNSEEN: f64 = 1e-12;
 
 /// A force that exceeds the friction by so large a part of it leads away from rest at once.
@@ -56,7 +60,8 @@ pub(super) struct StateEquations<'a> {
 #[derive(Clone, Debug)]
 struct Surface {
     u: Expr,
-    /// Every argument of a `sgn`, `H` or `abs` that is zero where u is, and whether it has the sign of u.
+    /// Every argument of a `sgn`, `H` or `abs` that is zero where u is, and whether it has the sign
+    /// of u.
     arguments: Vec<(Expr, bool)>,
     /// Half of the jump of du/dt.
     strength: f64,
@@ -69,7 +74,8 @@ enum Regime {
     Typed,
     /// The motion stays on it.
     Held,
-    /// The motion stays on it where it stays on others; its friction is that of the one of this number, in parts of the bounds, with this sign.
+    /// The motion stays on it where it stays on others; its friction is that of the one of this
+    /// number, in parts of the bounds, with this sign.
     Tied(usize, i64),
     /// The motion has left it to this side, 1 or -1, and has not come back yet.
     Left(i64),
@@ -105,7 +111,8 @@ impl Layout {
 }
 
 impl Course {
-    /// The motion stretch by stretch, each as the equations say or with something held by friction, and why it ends.
+    /// The motion stretch by stretch, each as the equations say or with something held by friction,
+    /// and why it ends.
     pub(super) fn pieces(
         &self,
         solver: &Solver,
@@ -142,7 +149,9 @@ impl Course {
                 _ => None,
             };
             let released = match reason {
-                End::Event(event) => hit.is_none() && released(&mut regimes, event.saturating_sub(recorded)),
+                End::Event(event) => {
+                    hit.is_none() && released(&mut regimes, event.saturating_sub(recorded))
+                }
                 End::Sticks => false,
                 reason => break reason,
             };
@@ -164,8 +173,9 @@ impl Course {
         Ok((pieces, reason))
     }
 
-    /// The motion from a time on, until something that is held is released or something that was left is back. The states that are held
-    /// are set to what is held. Nothing where there are no such equations.
+    /// The motion from a time on, until something that is held is released or something that was
+    /// left is back. The states that are held are set to what is held. Nothing where there are no
+    /// such equations.
     fn stretch(
         &self,
         equations: &StateEquations,
@@ -174,14 +184,21 @@ impl Course {
         state: &mut [f64],
         options: &Options,
     ) -> Result<Option<Piece>, TrajectoryError> {
-        let Some(sliding) = sliding(equations, regimes, &numbers_at(equations, from, state))? else {
+        let Some(sliding) = sliding(equations, regimes, &numbers_at(equations, from, state))?
+        else {
             return Ok(None);
         };
         let followed: Vec<usize> = (0..state.len())
             .filter(|index| !sliding.fixed.contains_key(&equations.states[*index]))
             .collect();
-        let names: Vec<Symbol> = followed.iter().map(|index| equations.states[*index]).collect();
-        let right: Vec<Expr> = followed.iter().map(|index| sliding.right[*index].clone()).collect();
+        let names: Vec<Symbol> = followed
+            .iter()
+            .map(|index| equations.states[*index])
+            .collect();
+        let right: Vec<Expr> = followed
+            .iter()
+            .map(|index| sliding.right[*index].clone())
+            .collect();
         let arguments: Vec<Symbol> = names
             .iter()
             .chain([&Symbol::new("t")])
@@ -239,7 +256,8 @@ impl Section {
 /// The events that each surface of a stretch has, in their order.
 const EVENTS: usize = 4;
 
-/// Lets go of what an event of a stretch says is released; `false` where it says that something is back on its surface.
+/// Lets go of what an event of a stretch says is released; `false` where it says that something is
+/// back on its surface.
 fn released(regimes: &mut Regimes, event: usize) -> bool {
     match regimes.get_mut(event / EVENTS) {
         Some((_, regime)) if *regime == Regime::Held => {
@@ -250,9 +268,12 @@ fn released(regimes: &mut Regimes, event: usize) -> bool {
     }
 }
 
-/// The surface whose friction reaches its bound in an event, where others have theirs from it or from each other.
+/// The surface whose friction reaches its bound in an event, where others have theirs from it or
+/// from each other.
 fn hit(regimes: &Regimes, event: usize) -> Option<Expr> {
-    let surplus = regimes.iter().any(|(_, regime)| matches!(regime, Regime::Tied(..)));
+    let surplus = regimes
+        .iter()
+        .any(|(_, regime)| matches!(regime, Regime::Tied(..)));
     let (surface, _) = regimes
         .get(event / EVENTS)
         .filter(|(_, regime)| surplus && *regime == Regime::Held)?;
@@ -274,8 +295,8 @@ fn velocities<'a>(equations: &StateEquations<'a>) -> impl Iterator<Item = Symbol
     states.iter().filter(is_velocity).copied()
 }
 
-/// A velocity that an expression is linear in, the one that it depends on most here, and its coefficient; nothing where the expression is
-/// not linear in the velocities, or contains none.
+/// A velocity that an expression is linear in, the one that it depends on most here, and its
+/// coefficient; nothing where the expression is not linear in the velocities, or contains none.
 fn leading_velocity(
     expression: &Expr,
     equations: &StateEquations,
@@ -309,13 +330,21 @@ fn solved(
 }
 
 /// The surfaces that a state is on, to rounding, and on which the rates jump.
-fn surfaces(equations: &StateEquations, time: f64, state: &[f64]) -> Result<Vec<Surface>, ExprError> {
+fn surfaces(
+    equations: &StateEquations,
+    time: f64,
+    state: &[f64],
+) -> Result<Vec<Surface>, ExprError> {
     let numbers = numbers_at(equations, time, state);
-    let size = 1.0 + state.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let size = 1.0
+        + state
+            .iter()
+            .fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let corner = |part: &Expr| match part.node() {
-        Node::Function(function @ (Function::Sign | Function::Step | Function::Absolute), arguments) => {
-            Some((*function != Function::Absolute, arguments.first()?.clone()))
-        }
+        Node::Function(
+            function @ (Function::Sign | Function::Step | Function::Absolute),
+            arguments,
+        ) => Some((*function != Function::Absolute, arguments.first()?.clone())),
         _ => None,
     };
     let mut corners: Vec<(bool, Expr)> = Vec::new();
@@ -335,15 +364,25 @@ fn surfaces(equations: &StateEquations, time: f64, state: &[f64]) -> Result<Vec<
         let Some((velocity, coefficient)) = leading_velocity(&argument, equations, &numbers) else {
             continue;
         };
-        let (Ok(value), Ok(slope)) = (argument.evaluate(&numbers), coefficient.evaluate(&numbers)) else {
+        let (Ok(value), Ok(slope)) = (argument.evaluate(&numbers), coefficient.evaluate(&numbers))
+        else {
             continue;
         };
         if value.is_nan() || value.abs() > AT_REST * size * slope.abs() {
             continue;
         }
         let known = found.iter_mut().find_map(|surface| {
-            let ratio = argument.differentiate(velocity).ok()?.evaluate(&numbers).ok()?
-                / surface.u.differentiate(velocity).ok()?.evaluate(&numbers).ok()?;
+            let ratio = argument
+                .differentiate(velocity)
+                .ok()?
+                .evaluate(&numbers)
+                .ok()?
+                / surface
+                    .u
+                    .differentiate(velocity)
+                    .ok()?
+                    .evaluate(&numbers)
+                    .ok()?;
             let factor = Expr::number(from_f64(ratio)?);
             let apart = (&argument - &(&factor * &surface.u)).expand().ok()?;
             let states = equations
@@ -367,8 +406,9 @@ fn surfaces(equations: &StateEquations, time: f64, state: &[f64]) -> Result<Vec<
     Ok(found)
 }
 
-/// How each of these surfaces, on which a state is, counts from there on: held where the friction that this needs is within its bound.
-/// Nothing where that cannot be told. Of the surface that was just hit the friction is at its bound, unless others take it over.
+/// How each of these surfaces, on which a state is, counts from there on: held where the friction
+/// that this needs is within its bound. Nothing where that cannot be told. Of the surface that was
+/// just hit the friction is at its bound, unless others take it over.
 fn regimes_at(
     equations: &StateEquations,
     found: Vec<Surface>,
@@ -380,7 +420,8 @@ fn regimes_at(
     let mut regimes = Regimes::new();
     for mut surface in found {
         let alone = vec![(surface.clone(), Regime::Held)];
-        let jump = sliding(equations, &alone, &numbers)?.and_then(|own| own.jumps.first()?.evaluate(&numbers).ok());
+        let jump = sliding(equations, &alone, &numbers)?
+            .and_then(|own| own.jumps.first()?.evaluate(&numbers).ok());
         // Rates that lead away on both sides, or do not jump, hold nothing.
         if let Some(jump) = jump.filter(|jump| *jump < 0.0) {
             surface.strength = -jump;
@@ -409,11 +450,19 @@ fn regimes_at(
             if share.is_nan() {
                 return Ok(None);
             }
-            let is_hit = regimes.iter().enumerate().any(|(other, (surface, regime))| {
-                let of_one_size = other == *index || matches!(regime, Regime::Tied(lead, _) if lead == index);
-                of_one_size && hit == Some(&surface.u)
-            });
-            let bound = if is_hit { 1.0 - ROUNDING } else { 1.0 + ROUNDING };
+            let is_hit = regimes
+                .iter()
+                .enumerate()
+                .any(|(other, (surface, regime))| {
+                    let of_one_size =
+                        other == *index || matches!(regime, Regime::Tied(lead, _) if lead == index);
+                    of_one_size && hit == Some(&surface.u)
+                });
+            let bound = if is_hit {
+                1.0 - ROUNDING
+            } else {
+                1.0 + ROUNDING
+            };
             if share.abs() > bound && worst.is_none_or(|(_, largest)| share.abs() > largest.abs()) {
                 worst = Some((*index, share));
             }
@@ -432,15 +481,21 @@ fn regimes_at(
         }
         if sliding.shares.is_empty() && excess > CLEARLY {
             // The corner itself says where the motion goes.
-            regimes.iter_mut().for_each(|(_, regime)| *regime = Regime::Typed);
+            regimes
+                .iter_mut()
+                .for_each(|(_, regime)| *regime = Regime::Typed);
         }
         return Ok(Some(regimes));
     }
 }
 
-/// Gives shares of one size to the frictions that the equations leave open: there are more of them at rest than independent velocities.
-/// `false` where that cannot be told.
-fn tie(equations: &StateEquations, regimes: &mut Regimes, numbers: &BTreeMap<Symbol, f64>) -> Result<bool, ExprError> {
+/// Gives shares of one size to the frictions that the equations leave open: there are more of them
+/// at rest than independent velocities. `false` where that cannot be told.
+fn tie(
+    equations: &StateEquations,
+    regimes: &mut Regimes,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Result<bool, ExprError> {
     for (_, regime) in regimes.iter_mut() {
         if matches!(regime, Regime::Tied(..)) {
             *regime = Regime::Held;
@@ -469,7 +524,9 @@ fn tie(equations: &StateEquations, regimes: &mut Regimes, numbers: &BTreeMap<Sym
         let rate = rates.of(equations, &regimes[*index].0.u)?;
         let mut row = Vec::new();
         for column in &rates.on {
-            let entry = rate.differentiate(rates.share(*column))?.substitute_all(&none)?;
+            let entry = rate
+                .differentiate(rates.share(*column))?
+                .substitute_all(&none)?;
             let Ok(entry) = entry.evaluate(&numbers) else {
                 return Ok(false);
             };
@@ -563,10 +620,16 @@ impl SurfaceRates {
         }
         let replaced = |expression: &Expr| -> Result<Expr, ExprError> {
             expression
-                .fold(|expr, children: &[Expr]| on_surfaces(expr, children, regimes, &|index| rates.share(index)))?
+                .fold(|expr, children: &[Expr]| {
+                    on_surfaces(expr, children, regimes, &|index| rates.share(index))
+                })?
                 .substitute_all(&rates.fixed)
         };
-        let right = equations.right.iter().map(replaced).collect::<Result<_, _>>()?;
+        let right = equations
+            .right
+            .iter()
+            .map(replaced)
+            .collect::<Result<_, _>>()?;
         Ok(Some(Self { right, ..rates }))
     }
 
@@ -619,7 +682,10 @@ fn sliding(
     let (right, fixed) = (&rates.right, &rates.fixed);
     let mut matrix = Vec::new();
     let mut rest = Vec::new();
-    let none: BTreeMap<Symbol, Expr> = held.iter().map(|index| (share(*index), Expr::zero())).collect();
+    let none: BTreeMap<Symbol, Expr> = held
+        .iter()
+        .map(|index| (share(*index), Expr::zero()))
+        .collect();
     for index in &rates.independent {
         let rate = rates.of(equations, &regimes[*index].0.u)?;
         let row: Vec<Expr> = held
@@ -636,7 +702,9 @@ fn sliding(
         matrix.push(row);
         rest.push(-rate.substitute_all(&none)?);
     }
-    let jumps: Vec<Expr> = (0..held.len()).map(|row| matrix[row][row].clone()).collect();
+    let jumps: Vec<Expr> = (0..held.len())
+        .map(|row| matrix[row][row].clone())
+        .collect();
     // Of frictions of one size each may act on another surface than its own.
     if held == rates.independent && jumps.iter().any(Expr::is_zero) {
         return Ok(None);
@@ -659,7 +727,10 @@ fn sliding(
         events.extend(match regime {
             Regime::Typed | Regime::Tied(..) => [(); EVENTS].map(|()| Event::record(Expr::from(1))),
             Regime::Held => {
-                let share = values.get(&share(index)).cloned().unwrap_or_else(Expr::zero);
+                let share = values
+                    .get(&share(index))
+                    .cloned()
+                    .unwrap_or_else(Expr::zero);
                 let [one, more] = [1.0, 1.0 + 2.0 * ROUNDING].map(number);
                 [
                     Event::stop(&share - &one).rising(),
@@ -695,28 +766,37 @@ fn number(value: f64) -> Expr {
     from_f64(value).map_or_else(Expr::zero, Expr::number)
 }
 
-/// A part of a rate on these surfaces: `sgn`, `H` and `abs` of what is zero there, or has been left to one side.
+/// A part of a rate on these surfaces: `sgn`, `H` and `abs` of what is zero there, or has been left
+/// to one side.
 fn on_surfaces(
     expr: &Expr,
     children: &[Expr],
     regimes: &Regimes,
     share: &dyn Fn(usize) -> Symbol,
 ) -> Result<Expr, ExprError> {
-    let Node::Function(function @ (Function::Sign | Function::Step | Function::Absolute), arguments) = expr.node()
+    let Node::Function(
+        function @ (Function::Sign | Function::Step | Function::Absolute),
+        arguments,
+    ) = expr.node()
     else {
         return expr.with_children(children);
     };
-    let meant = regimes.iter().enumerate().find_map(|(index, (surface, regime))| {
-        let known = surface
-            .arguments
-            .iter()
-            .find(|(known, _)| arguments.first() == Some(known));
-        known.map(|(_, same)| (index, *regime, if *same { 1 } else { -1 }))
-    });
+    let meant = regimes
+        .iter()
+        .enumerate()
+        .find_map(|(index, (surface, regime))| {
+            let known = surface
+                .arguments
+                .iter()
+                .find(|(known, _)| arguments.first() == Some(known));
+            known.map(|(_, same)| (index, *regime, if *same { 1 } else { -1 }))
+        });
     let sign = match meant {
         None | Some((_, Regime::Typed, _)) => return expr.with_children(children),
         Some((index, Regime::Held, same)) => Expr::from(same) * Expr::from(share(index)),
-        Some((_, Regime::Tied(lead, sign), same)) => Expr::from(same * sign) * Expr::from(share(lead)),
+        Some((_, Regime::Tied(lead, sign), same)) => {
+            Expr::from(same * sign) * Expr::from(share(lead))
+        }
         Some((_, Regime::Left(side), same)) => Expr::from(same * side),
     };
     Ok(match (function, meant, arguments.first()) {

@@ -1,11 +1,12 @@
-//! Where a drive is short: the times at which a step has to end, so that no integrator steps over a pulse.
+//! Where a drive is short: the times at which a step has to end, so that no integrator steps over a
+//! pulse.
 //!
 //! ```text
 //! F(t) = exp(-((t - s)/w)^2), tanh((t - s)/w), ...      s +- 2 w, 4 w, 8 w, ..., half the way to the next pulse
 //! ```
 //!
-//! An integrator looks at the drive along its step only; far from a pulse there is nothing to be seen of it. The expression knows
-//! where it is and how wide.
+//! An integrator looks at the drive along its step only; far from a pulse there is nothing to be
+//! seen of it. The expression knows where it is and how wide.
 
 use std::collections::BTreeMap;
 
@@ -16,8 +17,8 @@ use crate::symbol::Symbol;
 /// So many widths away a pulse is nothing in double precision: from there on steps may grow faster.
 const FAR: f64 = 32.0;
 
-/// The times between zero and the duration at which a step has to end, in order. Waves alone, `cos(W*t)`, have none: they are to be seen
-/// everywhere.
+/// The times between zero and the duration at which a step has to end, in order. Waves alone,
+/// `cos(W*t)`, have none: they are to be seen everywhere.
 pub(super) fn critical_times(
     right: &[Expr],
     states: &[Symbol],
@@ -51,7 +52,8 @@ pub(super) fn critical_times(
         let behind = pulses.get(index + 1).map(|next| next.place);
         times.push(pulse.place);
         for (side, neighbour) in [(-1.0, before), (1.0, behind)] {
-            let reach = neighbour.map_or(duration, |neighbour| 0.5 * (neighbour - pulse.place).abs());
+            let reach =
+                neighbour.map_or(duration, |neighbour| 0.5 * (neighbour - pulse.place).abs());
             let mut distance = 2.0 * width;
             while distance < reach {
                 times.push(pulse.place + side * distance);
@@ -65,12 +67,14 @@ pub(super) fn critical_times(
     times
 }
 
-/// Whether a function of time may be there for a short while only. Waves, corners, which end a step by themselves, and low powers are as
-/// short as what stands in them.
+/// Whether a function of time may be there for a short while only. Waves, corners, which end a step
+/// by themselves, and low powers are as short as what stands in them.
 fn may_be_short(expr: &Expr) -> bool {
     use Function::{Absolute, Cos, Maximum, Minimum, Sign, Sin, Step, Tan};
     match expr.node() {
-        Node::Function(function, _) => ![Absolute, Cos, Maximum, Minimum, Sign, Sin, Step, Tan].contains(function),
+        Node::Function(function, _) => {
+            ![Absolute, Cos, Maximum, Minimum, Sign, Sin, Step, Tan].contains(function)
+        }
         Node::Power(..) => true,
         _ => false,
     }

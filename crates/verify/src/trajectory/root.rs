@@ -1,11 +1,13 @@
-//! Powers such as 3/2 that begin at a corner: the force of a contact, written so that a step may look across its touch.
+//! Powers such as 3/2 that begin at a corner: the force of a contact, written so that a step may
+//! look across its touch.
 //!
 //! ```text
 //! u^r H(u), max(u, 0)^r  ->  (u^2)^(r/2) H(u)        abs(u)^r  ->  (u^2)^(r/2) sgn(u)^2        r = 3/2, 1/2, ..., or a letter
 //! ```
 //!
-//! Both sides are equal for every real u. But between its corners an expression is followed as it is on one side, and there u may be
-//! negative for a moment, before the corner is found: the left one has no value then, the right one has, and keeps its corner.
+//! Both sides are equal for every real u. But between its corners an expression is followed as it
+//! is on one side, and there u may be negative for a moment, before the corner is found: the left
+//! one has no value then, the right one has, and keeps its corner.
 
 use std::collections::BTreeMap;
 
@@ -16,9 +18,12 @@ use crate::expr::{Expr, ExprError, Function, Node};
 use crate::series::guard::Guard;
 use crate::symbol::Symbol;
 
-/// The same expression with its roots at corners so that they have a value on both sides. What a corner depends on must not jump, so
-/// inside of one no steps are put in.
-pub(super) fn roots_across_corners(expression: &Expr, values: &BTreeMap<Symbol, f64>) -> Result<Expr, ExprError> {
+/// The same expression with its roots at corners so that they have a value on both sides. What a
+/// corner depends on must not jump, so inside of one no steps are put in.
+pub(super) fn roots_across_corners(
+    expression: &Expr,
+    values: &BTreeMap<Symbol, f64>,
+) -> Result<Expr, ExprError> {
     expression.fold(|expr, children: &[Expr]| match (expr.node(), children) {
         (Node::Function(function, arguments), _) if is_corner(*function) => {
             let inside: Result<Vec<Expr>, ExprError> = arguments
@@ -27,10 +32,14 @@ pub(super) fn roots_across_corners(expression: &Expr, values: &BTreeMap<Symbol, 
                 .collect();
             expr.with_children(&inside?)
         }
-        (Node::Power(..), [base, exponent]) if rises_as_root(exponent, values) => match root_of(base, values)? {
-            Some(Rooted { inner, gate }) => Ok(Expr::product([even_root(&inner, exponent)?, gate])),
-            None => expr.with_children(children),
-        },
+        (Node::Power(..), [base, exponent]) if rises_as_root(exponent, values) => {
+            match root_of(base, values)? {
+                Some(Rooted { inner, gate }) => {
+                    Ok(Expr::product([even_root(&inner, exponent)?, gate]))
+                }
+                None => expr.with_children(children),
+            }
+        }
         (Node::Product(..), _) => behind_gates(expr, children, values),
         _ => expr.with_children(children),
     })
@@ -41,13 +50,16 @@ fn is_corner(function: Function) -> bool {
     [Absolute, Maximum, Minimum, Sign, Step].contains(&function)
 }
 
-/// An argument of a corner: `(max(u, 0)^2)^(r/2)`, and `abs(u) (u^2)^((r - 1)/2)` where r is more than one.
+/// An argument of a corner: `(max(u, 0)^2)^(r/2)`, and `abs(u) (u^2)^((r - 1)/2)` where r is more
+/// than one.
 fn inside_corner(argument: &Expr, values: &BTreeMap<Symbol, f64>) -> Result<Expr, ExprError> {
     argument.fold(|expr, children: &[Expr]| match (expr.node(), children) {
         (Node::Power(..), [base, exponent]) if rises_as_root(exponent, values) => {
             let less = exponent - &Expr::one();
             match root_of(base, values)? {
-                Some(Rooted { gate, .. }) if gate.contains_function(Function::Step) => even_root(base, exponent),
+                Some(Rooted { gate, .. }) if gate.contains_function(Function::Step) => {
+                    even_root(base, exponent)
+                }
                 Some(Rooted { inner, .. }) if rises_as_root(&less, values) => {
                     Ok(Expr::product([base.clone(), even_root(&inner, &less)?]))
                 }
@@ -60,14 +72,19 @@ fn inside_corner(argument: &Expr, values: &BTreeMap<Symbol, f64>) -> Result<Expr
 
 /// `(base^2)^(exponent/2)`.
 fn even_root(base: &Expr, exponent: &Expr) -> Result<Expr, ExprError> {
-    Expr::power(&base.integer_power(2)?, &(exponent * &Expr::number(ratio(1, 2))))
+    Expr::power(
+        &base.integer_power(2)?,
+        &(exponent * &Expr::number(ratio(1, 2))),
+    )
 }
 
 /// Whether a power with this exponent has no value below zero.
 fn draws_root(exponent: &Expr, values: &BTreeMap<Symbol, f64>) -> bool {
     match exponent.as_number() {
         Some(number) => (number.denom() % Integer::from(2)).is_zero(),
-        None => exponent.evaluate(values).is_ok_and(|value| value.fract() != 0.0),
+        None => exponent
+            .evaluate(values)
+            .is_ok_and(|value| value.fract() != 0.0),
     }
 }
 
@@ -76,13 +93,15 @@ fn rises_as_root(exponent: &Expr, values: &BTreeMap<Symbol, f64>) -> bool {
     draws_root(exponent, values) && exponent.evaluate(values).is_ok_and(|value| value > 0.0)
 }
 
-/// What is nowhere negative and zero at a corner: the inner expression where its gate is not zero, or its absolute value there.
+/// What is nowhere negative and zero at a corner: the inner expression where its gate is not zero,
+/// or its absolute value there.
 struct Rooted {
     inner: Expr,
     gate: Expr,
 }
 
-/// The base of a root as one: positive numbers times `max(u, 0)`, `-min(u, 0)` or `abs(u)`, or `c*u + c*abs(u)`.
+/// The base of a root as one: positive numbers times `max(u, 0)`, `-min(u, 0)` or `abs(u)`, or
+/// `c*u + c*abs(u)`.
 fn root_of(base: &Expr, values: &BTreeMap<Symbol, f64>) -> Result<Option<Rooted>, ExprError> {
     let step = |inner: Expr| {
         let gate = Expr::function(Function::Step, vec![inner.clone()])?;
@@ -114,17 +133,29 @@ fn root_of(base: &Expr, values: &BTreeMap<Symbol, f64>) -> Result<Option<Rooted>
             inner: &before * inner,
             gate: Expr::function(Function::Sign, vec![inner.clone()])?.integer_power(2)?,
         })),
-        (Function::Maximum, arguments) if is_positive(&before, values) => other(arguments).map_or(Ok(None), step),
-        (Function::Minimum, arguments) if is_positive(&-&before, values) => other(arguments).map_or(Ok(None), step),
+        (Function::Maximum, arguments) if is_positive(&before, values) => {
+            other(arguments).map_or(Ok(None), step)
+        }
+        (Function::Minimum, arguments) if is_positive(&-&before, values) => {
+            other(arguments).map_or(Ok(None), step)
+        }
         _ => Ok(None),
     }
 }
 
 /// An expression as numbers times one function with its arguments, where it is that.
-fn one_function<'a>(expr: &'a Expr, values: &BTreeMap<Symbol, f64>) -> (Expr, Option<(Function, &'a [Expr])>) {
+fn one_function<'a>(
+    expr: &'a Expr,
+    values: &BTreeMap<Symbol, f64>,
+) -> (Expr, Option<(Function, &'a [Expr])>) {
     let (number, factors) = expr.factors();
-    let (numbers, rest): (Vec<&Expr>, Vec<&Expr>) = factors.iter().partition(|factor| is_number(factor, values));
-    let before = Expr::product([Expr::number(number)].into_iter().chain(numbers.into_iter().cloned()));
+    let (numbers, rest): (Vec<&Expr>, Vec<&Expr>) =
+        factors.iter().partition(|factor| is_number(factor, values));
+    let before = Expr::product(
+        [Expr::number(number)]
+            .into_iter()
+            .chain(numbers.into_iter().cloned()),
+    );
     let function = match rest.as_slice() {
         [only] => match only.node() {
             Node::Function(function, arguments) => Some((*function, arguments.as_slice())),
@@ -143,9 +174,13 @@ fn is_positive(expr: &Expr, values: &BTreeMap<Symbol, f64>) -> bool {
     expr.evaluate(values).is_ok_and(|value| value > 0.0)
 }
 
-/// `u^r H(v)` as `(u^2)^(r/2) H(v)` where u is zero with v and positive behind it. A root without its own gate is left alone, for where u is
-/// negative it has no value.
-fn behind_gates(product: &Expr, factors: &[Expr], values: &BTreeMap<Symbol, f64>) -> Result<Expr, ExprError> {
+/// `u^r H(v)` as `(u^2)^(r/2) H(v)` where u is zero with v and positive behind it. A root without
+/// its own gate is left alone, for where u is negative it has no value.
+fn behind_gates(
+    product: &Expr,
+    factors: &[Expr],
+    values: &BTreeMap<Symbol, f64>,
+) -> Result<Expr, ExprError> {
     let gates: Vec<&Expr> = factors
         .iter()
         .filter_map(|factor| match factor.node() {
@@ -172,7 +207,8 @@ fn behind_gates(product: &Expr, factors: &[Expr], values: &BTreeMap<Symbol, f64>
     product.with_children(&factors?)
 }
 
-/// Whether a base is a positive number times the argument of a gate, or times its sine: zero where the gate opens, and positive behind it.
+/// Whether a base is a positive number times the argument of a gate, or times its sine: zero where
+/// the gate opens, and positive behind it.
 fn is_open_with(base: &Expr, gate: &Expr, values: &BTreeMap<Symbol, f64>) -> bool {
     let in_proportion = |one: &Expr, other: &Expr| {
         let ratio = Guard::new(one, values).ratio_to(&Guard::new(other, values));
@@ -182,7 +218,9 @@ fn is_open_with(base: &Expr, gate: &Expr, values: &BTreeMap<Symbol, f64>) -> boo
         return true;
     }
     match one_function(base, values) {
-        (before, Some((Function::Sin, [argument]))) => is_positive(&before, values) && in_proportion(argument, gate),
+        (before, Some((Function::Sin, [argument]))) => {
+            is_positive(&before, values) && in_proportion(argument, gate)
+        }
         _ => false,
     }
 }

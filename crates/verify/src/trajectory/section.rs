@@ -1,6 +1,8 @@
-//! Poincare's section of a motion: its states once a period, or wherever an expression grows through zero.
+//! Poincare's section of a motion: its states once a period, or wherever an expression grows
+//! through zero.
 //!
-//! Reference: A. H. Nayfeh and B. Balachandran, *Applied Nonlinear Dynamics*, Wiley 1995, section 1.4 and chapter 7.
+//! Reference: A. H. Nayfeh and B. Balachandran, *Applied Nonlinear Dynamics*, Wiley 1995,
+//! section 1.4 and chapter 7.
 //!
 //! ```text
 //! t = T, 2 T, 3 T, ...                       of a motion that is driven with the period T
@@ -8,7 +10,8 @@
 //! s = 0 at the largest or the least s        touched, not crossed
 //! ```
 //!
-//! A motion that turns back where s is zero touches the section and does not cross it, on whichever side rounding leaves it there.
+//! A motion that turns back where s is zero touches the section and does not cross it, on whichever
+//! side rounding leaves it there.
 
 use super::{Trajectory, TrajectoryError};
 use crate::expr::Expr;
@@ -45,8 +48,8 @@ impl Section {
         }
     }
 
-    /// What the integrator has to look out for: the expression, and its rate, whose zeros are where a touch may be. A rate that cannot be
-    /// written is left out.
+    /// What the integrator has to look out for: the expression, and its rate, whose zeros are where
+    /// a touch may be. A rate that cannot be written is left out.
     pub(super) fn events(&self, rates: &Rates) -> Vec<Event> {
         match self {
             Self::Every(_) => vec![],
@@ -77,7 +80,8 @@ pub(super) struct OnSection {
 }
 
 impl Trajectory {
-    /// The states on the section of the course from its time `after` on, in order; none without a section.
+    /// The states on the section of the course from its time `after` on, in order; none without a
+    /// section.
     ///
     /// ```
     /// # use lindstedt_verify as lindstedt;
@@ -96,8 +100,9 @@ impl Trajectory {
         &self.on_section.crossings
     }
 
-    /// The times from `after` on at which the motion turns back on its section, to a part in 1e9 of how far it goes: it touches the section
-    /// there and does not cross it, so that there is no crossing.
+    /// The times from `after` on at which the motion turns back on its section, to a part in 1e9 of
+    /// how far it goes: it touches the section there and does not cross it, so that there is no
+    /// crossing.
     ///
     /// ```
     /// # use lindstedt_verify as lindstedt;
@@ -129,7 +134,10 @@ impl Trajectory {
                 });
                 let (crossed, turned): (Vec<&Occurrence>, Vec<&Occurrence>) =
                     met.partition(|occurrence| occurrence.event == 0);
-                touched = self.turns_on(expression, turned.into_iter().map(|turn| turn.time).collect());
+                touched = self.turns_on(
+                    expression,
+                    turned.into_iter().map(|turn| turn.time).collect(),
+                );
                 let touches = |time: f64| {
                     touched
                         .iter()
@@ -149,7 +157,9 @@ impl Trajectory {
                 if !(number > 0.0 && count < MOST_CROSSINGS) {
                     return Err(TrajectoryError::Period(period.clone(), number));
                 }
-                (1..=count as u32).map(|index| number * f64::from(index)).collect()
+                (1..=count as u32)
+                    .map(|index| number * f64::from(index))
+                    .collect()
             }
         };
         let crossing = |time: f64| {
@@ -160,27 +170,42 @@ impl Trajectory {
         };
         let in_time = |time: &f64| *time >= course.after;
         Ok(OnSection {
-            crossings: times.into_iter().filter(in_time).filter_map(crossing).collect(),
-            touches: touched.into_iter().map(|[_, at, _]| at).filter(in_time).collect(),
+            crossings: times
+                .into_iter()
+                .filter(in_time)
+                .filter_map(crossing)
+                .collect(),
+            touches: touched
+                .into_iter()
+                .map(|[_, at, _]| at)
+                .filter(in_time)
+                .collect(),
         })
     }
 
-    /// Of the times at which an expression is largest or least those at which it is zero, to rounding, and is not at the turns before and
-    /// behind, both on the same side; each between these two.
+    /// Of the times at which an expression is largest or least those at which it is zero, to
+    /// rounding, and is not at the turns before and behind, both on the same side; each between
+    /// these two.
     fn turns_on(&self, expression: &Expr, turns: Vec<f64>) -> Vec<[f64; 3]> {
         /// Of the largest value.
         const TOUCH: f64 = 1e-9;
         let Some(function) = self.compiled(expression) else {
             return vec![];
         };
-        let value = |time: f64| Some(function(time, &self.at(time)?)).filter(|value| value.is_finite());
+        let value =
+            |time: f64| Some(function(time, &self.at(time)?)).filter(|value| value.is_finite());
         let times = [0.0].into_iter().chain(turns).chain([self.end()]);
-        let heights: Vec<(f64, f64)> = times.filter_map(|time| Some((time, value(time)?))).collect();
-        let largest = heights.iter().fold(0.0_f64, |most, (_, height)| most.max(height.abs()));
+        let heights: Vec<(f64, f64)> = times
+            .filter_map(|time| Some((time, value(time)?)))
+            .collect();
+        let largest = heights
+            .iter()
+            .fold(0.0_f64, |most, (_, height)| most.max(height.abs()));
         let touch = |around: &[(f64, f64)]| {
             let [(before, one), (at, height), (behind, other)] = [around[0], around[1], around[2]];
             let away = |height: f64| height.abs() > TOUCH * largest;
-            (!away(height) && away(one) && away(other) && one * other > 0.0).then_some([before, at, behind])
+            (!away(height) && away(one) && away(other) && one * other > 0.0)
+                .then_some([before, at, behind])
         };
         heights.windows(3).filter_map(touch).collect()
     }
@@ -192,7 +217,8 @@ impl Trajectory {
         let count = self.course.coordinates.len();
         let (from, end) = (self.course.after.min(self.end()), self.end());
         let mut extremes = vec![[f64::INFINITY, f64::NEG_INFINITY]; count];
-        let times = (0..=PIECES).map(|piece| from + (end - from) * f64::from(piece) / f64::from(PIECES));
+        let times =
+            (0..=PIECES).map(|piece| from + (end - from) * f64::from(piece) / f64::from(PIECES));
         let sampled = self.sample(times.collect(), 2 * count);
         for (index, [least, greatest]) in extremes.iter_mut().enumerate() {
             let mut take = |value: f64| {

@@ -6,13 +6,15 @@
 //! errors of the integration grow as d does: six digits are lost where d reaches 1e-12 (1e-6/e), e = 1e-15 or its tolerance
 //! ```
 //!
-//! Of a chaotic motion that is soon: `d` grows like `exp(lambda t)` with the largest exponent of Lyapunov (G. Benettin, L. Galgani, J.-M. Strelcyn,
-//! *Phys. Rev. A* 14 (1976) 2338, who follow two motions side by side).
+//! Of a chaotic motion that is soon: `d` grows like `exp(lambda t)` with the largest exponent of
+//! Lyapunov (G. Benettin, L. Galgani, J.-M. Strelcyn, *Phys. Rev. A* 14 (1976) 2338, who follow two
+//! motions side by side).
 
 use super::{ACCOUNTS, Trajectory};
 use crate::system::End;
 
-/// The part of a state by which its start is displaced: more than rounding, and so little that differences grow in proportion.
+/// The part of a state by which its start is displaced: more than rounding, and so little that
+/// differences grow in proportion.
 pub const DISPLACEMENT: f64 = 1e-12;
 
 /// What the errors of the integration begin with, at least.
@@ -25,8 +27,9 @@ const BEGINNING: u32 = 100;
 const SIX_DIGITS: f64 = 1e-6;
 
 impl Trajectory {
-    /// The time until which its states are known to six digits of their sizes, one of two thousand in the motion; beyond it a start displaced by
-    /// [`DISPLACEMENT`] of it leads elsewhere. `None` where they are known to the end. Costs as much as the motion.
+    /// The time until which its states are known to six digits of their sizes, one of two thousand
+    /// in the motion; beyond it a start displaced by [`DISPLACEMENT`] of it leads elsewhere. `None`
+    /// where they are known to the end. Costs as much as the motion.
     ///
     /// ```
     /// # use lindstedt_verify as lindstedt;
@@ -68,7 +71,10 @@ impl Trajectory {
         let (mut known, mut doubtful) = (0.0, false);
         for time in (0..=ACCOUNTS).map(|index| time(end, index)) {
             let (one, other) = (self.at(time)?, displaced.at(time)?);
-            let apart = one.iter().zip(&other).map(|(one, other)| (one - other).abs());
+            let apart = one
+                .iter()
+                .zip(&other)
+                .map(|(one, other)| (one - other).abs());
             let is_lost = apart.zip(&sizes).any(|(apart, size)| apart > lost * size);
             // One moment alone may lie between two jumps of one force.
             match (is_lost, doubtful) {

@@ -1,14 +1,17 @@
-//! More frictions at rest than velocities that are independent: a body that sticks to the floor and to another that sticks to the floor too.
+//! More frictions at rest than velocities that are independent: a body that sticks to the floor and
+//! to another that sticks to the floor too.
 //!
 //! ```text
 //! A s = r,  |s_i| <= 1                 du_i/dt = 0 on every surface: the shares s are not determined where A is singular, s = s0 + N z
 //! min over z of max |s_i|  =  max over w of |w^T s0| / sum |w_i|,    w^T N = 0,  w with as few entries as possible
 //! ```
 //!
-//! All stick as long as any shares within the bounds hold them (J. J. Moreau, *Unilateral contact and dry friction in finite freedom dynamics*,
-//! CISM 302, Springer 1988), so those with the least of the largest are taken. By the duality of linear programming (A. Schrijver, *Theory of
-//! Linear and Integer Programming*, Wiley 1986, chapters 7 and 8) the largest ones are those of a `w`: the slip that is nearest. All of its
-//! surfaces have a share of one size, with the sign of `w_i`, and reach their bounds together. What is left open then is decided alike.
+//! All stick as long as any shares within the bounds hold them (J. J. Moreau, *Unilateral contact
+//! and dry friction in finite freedom dynamics*, CISM 302, Springer 1988), so those with the least
+//! of the largest are taken. By the duality of linear programming (A. Schrijver, *Theory of Linear
+//! and Integer Programming*, Wiley 1986, chapters 7 and 8) the largest ones are those of a `w`: the
+//! slip that is nearest. All of its surfaces have a share of one size, with the sign of `w_i`, and
+//! reach their bounds together. What is left open then is decided alike.
 
 /// A part of the largest entry that counts as zero.
 const NOTHING: f64 = 1e-9;
@@ -16,8 +19,8 @@ const NOTHING: f64 = 1e-9;
 /// So many slips are looked at.
 const MOST_SLIPS: usize = 20_000;
 
-/// The shares that have one size, each by its number with a sign, for as many as the equations leave open; `None` where they contradict each
-/// other, or are too many.
+/// The shares that have one size, each by its number with a sign, for as many as the equations
+/// leave open; `None` where they contradict each other, or are too many.
 pub(super) fn of_one_size(matrix: &[Vec<f64>], right: &[f64]) -> Option<Vec<Vec<(usize, i64)>>> {
     let (mut shares, mut open) = solutions(matrix, right)?;
     let mut groups = Vec::new();
@@ -31,7 +34,13 @@ pub(super) fn of_one_size(matrix: &[Vec<f64>], right: &[f64]) -> Option<Vec<Vec<
             .collect();
         let (along, rest) = solutions(&rows, &wanted)?;
         let moved = |along: &[f64]| -> Vec<f64> {
-            let part = |index: usize| along.iter().zip(&open).map(|(z, column)| z * column[index]).sum();
+            let part = |index: usize| {
+                along
+                    .iter()
+                    .zip(&open)
+                    .map(|(z, column)| z * column[index])
+                    .sum()
+            };
             (0..shares.len()).map(part).collect()
         };
         let next: Vec<f64> = shares
@@ -61,7 +70,11 @@ fn nearest_slip(shares: &[f64], open: &[Vec<f64>]) -> Option<(f64, Vec<(usize, i
         .flatten()
         .fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
     let free: Vec<usize> = (0..shares.len())
-        .filter(|index| row(open, *index).iter().any(|entry| entry.abs() > NOTHING * largest))
+        .filter(|index| {
+            row(open, *index)
+                .iter()
+                .any(|entry| entry.abs() > NOTHING * largest)
+        })
         .collect();
     let mut nearest: Option<(f64, Vec<(usize, i64)>)> = None;
     let mut chosen: Vec<usize> = (0..=open.len()).collect();
@@ -85,8 +98,14 @@ fn nearest_slip(shares: &[f64], open: &[Vec<f64>]) -> Option<(f64, Vec<(usize, i
             let size = power.abs() / whole;
             if nearest.as_ref().is_none_or(|(known, _)| size > *known) {
                 let sign = |w: f64| if (w > 0.0) == (power >= 0.0) { 1 } else { -1 };
-                let of_slip = slip.iter().zip(&chosen).filter(|(w, _)| w.abs() > NOTHING * whole);
-                nearest = Some((size, of_slip.map(|(w, place)| (free[*place], sign(*w))).collect()));
+                let of_slip = slip
+                    .iter()
+                    .zip(&chosen)
+                    .filter(|(w, _)| w.abs() > NOTHING * whole);
+                nearest = Some((
+                    size,
+                    of_slip.map(|(w, place)| (free[*place], sign(*w))).collect(),
+                ));
             }
         }
         if !next_choice(&mut chosen, free.len()) {
@@ -99,7 +118,10 @@ fn nearest_slip(shares: &[f64], open: &[Vec<f64>]) -> Option<(f64, Vec<(usize, i
 /// The next choice of as many of `count`, in order; `false` after the last one.
 fn next_choice(chosen: &mut [usize], count: usize) -> bool {
     let size = chosen.len();
-    let Some(place) = (0..size).rev().find(|place| chosen[*place] < count - size + place) else {
+    let Some(place) = (0..size)
+        .rev()
+        .find(|place| chosen[*place] < count - size + place)
+    else {
         return false;
     };
     let first = chosen[place] + 1;
@@ -109,7 +131,8 @@ fn next_choice(chosen: &mut [usize], count: usize) -> bool {
     true
 }
 
-/// One solution of linear equations and the directions in which there are more; `None` where they contradict each other.
+/// One solution of linear equations and the directions in which there are more; `None` where they
+/// contradict each other.
 fn solutions(matrix: &[Vec<f64>], right: &[f64]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
     /// What rounding, and places that are on their surfaces to rounding, leave of zero.
     const APART: f64 = 1e-6;
@@ -122,21 +145,40 @@ fn solutions(matrix: &[Vec<f64>], right: &[f64]) -> Option<(Vec<f64>, Vec<Vec<f6
     if rows.iter().flatten().any(|entry| !entry.is_finite()) {
         return None;
     }
-    let size_of = |entries: &[f64]| entries.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
-    let matrix_size = rows.iter().map(|row| size_of(&row[..count])).fold(0.0, f64::max);
+    let size_of = |entries: &[f64]| {
+        entries
+            .iter()
+            .fold(0.0_f64, |largest, entry| largest.max(entry.abs()))
+    };
+    let matrix_size = rows
+        .iter()
+        .map(|row| size_of(&row[..count]))
+        .fold(0.0, f64::max);
     let right_size = size_of(right).max(matrix_size);
     let mut pivots: Vec<usize> = Vec::new();
     while pivots.len() < rows.len() {
         let done = pivots.len();
         let places = (done..rows.len()).flat_map(|row| (0..count).map(move |column| (row, column)));
-        let pivot = places.max_by(|one, other| rows[one.0][one.1].abs().total_cmp(&rows[other.0][other.1].abs()));
-        let Some((row, column)) = pivot.filter(|(row, column)| rows[*row][*column].abs() > NOTHING * matrix_size)
+        let pivot = places.max_by(|one, other| {
+            rows[one.0][one.1]
+                .abs()
+                .total_cmp(&rows[other.0][other.1].abs())
+        });
+        let Some((row, column)) =
+            pivot.filter(|(row, column)| rows[*row][*column].abs() > NOTHING * matrix_size)
         else {
             break;
         };
         rows.swap(done, row);
-        let leading: Vec<f64> = rows[done].iter().map(|entry| entry / rows[done][column]).collect();
-        for (_, row) in rows.iter_mut().enumerate().filter(|(index, _)| *index != done) {
+        let leading: Vec<f64> = rows[done]
+            .iter()
+            .map(|entry| entry / rows[done][column])
+            .collect();
+        for (_, row) in rows
+            .iter_mut()
+            .enumerate()
+            .filter(|(index, _)| *index != done)
+        {
             let factor = row[column];
             for (entry, of_pivot) in row.iter_mut().zip(&leading) {
                 *entry -= factor * of_pivot;
@@ -173,21 +215,39 @@ fn solutions(matrix: &[Vec<f64>], right: &[f64]) -> Option<(Vec<f64>, Vec<Vec<f6
 mod tests {
     use super::of_one_size;
 
-    /// Two bodies on the floor and on each other: the one that is pushed slips on both, the pair together, or each on its own.
+    /// Two bodies on the floor and on each other: the one that is pushed slips on both, the pair
+    /// together, or each on its own.
     #[test]
     fn the_nearest_slip_is_that_of_statics() {
-        // du/dt of x', y' and x' - y' for masses of one and the bounds 1, b, c: x'' = f - s1 - c s3, y'' = g - b s2 + c s3.
+        // du/dt of x', y' and x' - y' for masses of one and the bounds 1, b, c: x'' = f - s1 - c
+        // s3, y'' = g - b s2 + c s3.
         let groups = |[b, c]: [f64; 2], [f, g]: [f64; 2]| {
             let matrix = [vec![1.0, 0.0, c], vec![0.0, b, -c], vec![1.0, -b, 2.0 * c]];
             of_one_size(&matrix, &[f, g, f - g])
         };
-        // f over 1 + c where x moves alone, (f + g)/(1 + b) where both do, g over b + c where y does.
-        assert_eq!(groups([1.0, 0.5], [1.2, 0.0]), Some(vec![vec![(0, 1), (2, 1)]]));
-        assert_eq!(groups([0.1, 0.5], [1.0, 0.0]), Some(vec![vec![(0, 1), (1, 1)]]));
-        assert_eq!(groups([1.0, 0.5], [0.0, -1.0]), Some(vec![vec![(1, -1), (2, 1)]]));
+        // f over 1 + c where x moves alone, (f + g)/(1 + b) where both do, g over b + c where y
+        // does.
+        assert_eq!(
+            groups([1.0, 0.5], [1.2, 0.0]),
+            Some(vec![vec![(0, 1), (2, 1)]])
+        );
+        assert_eq!(
+            groups([0.1, 0.5], [1.0, 0.0]),
+            Some(vec![vec![(0, 1), (1, 1)]])
+        );
+        assert_eq!(
+            groups([1.0, 0.5], [0.0, -1.0]),
+            Some(vec![vec![(1, -1), (2, 1)]])
+        );
         // What contradicts itself has no shares.
-        assert_eq!(of_one_size(&[vec![1.0, 1.0], vec![1.0, 1.0]], &[1.0, 2.0]), None);
-        assert_eq!(of_one_size(&[vec![f64::NAN, 1.0], vec![1.0, 1.0]], &[1.0, 2.0]), None);
+        assert_eq!(
+            of_one_size(&[vec![1.0, 1.0], vec![1.0, 1.0]], &[1.0, 2.0]),
+            None
+        );
+        assert_eq!(
+            of_one_size(&[vec![f64::NAN, 1.0], vec![1.0, 1.0]], &[1.0, 2.0]),
+            None
+        );
         // Nothing is open.
         assert_eq!(
             of_one_size(&[vec![2.0, 0.0], vec![0.0, 1.0]], &[1.0, 2.0]),

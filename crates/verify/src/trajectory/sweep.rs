@@ -1,7 +1,9 @@
-//! Many motions of one equation: a parameter, or a start, takes value after value, and each motion leaves its section behind.
+//! Many motions of one equation: a parameter, or a start, takes value after value, and each motion
+//! leaves its section behind.
 //!
-//! In: a [`Course`] and the values of some of its names. Out: a [`SweptMotion`] each, in their order, whatever the number of threads; where
-//! somebody asks to stop, those that were begun. With a [`Section`](super::Section) once a period, the points of a bifurcation diagram.
+//! In: a [`Course`] and the values of some of its names. Out: a [`SweptMotion`] each, in their
+//! order, whatever the number of threads; where somebody asks to stop, those that were begun. With
+//! a [`Section`](super::Section) once a period, the points of a bifurcation diagram.
 
 use super::{Accounted, Course, Crossing, TrajectoryError};
 use crate::parallel::each;
@@ -27,8 +29,9 @@ pub struct SweptMotion {
     pub reason: End,
 }
 
-/// Follows the course at every one of the values; `progress` hears of each motion that is done. Costs a motion each, on all cores. Once the
-/// interrupt of the course asks for it, no other motion is begun; those that had come past the time `after` are handed back.
+/// Follows the course at every one of the values; `progress` hears of each motion that is done.
+/// Costs a motion each, on all cores. Once the interrupt of the course asks for it, no other motion
+/// is begun; those that had come past the time `after` are handed back.
 ///
 /// # Errors
 /// The number, counted from zero, of the first motion that cannot begin, and why.
@@ -63,7 +66,9 @@ pub fn sweep(
         course
     };
     // The equations are made ready once, if they can be, and take other numbers for each motion.
-    let ready = grid.first().and_then(|first| at(first).ready(Integrator::Taylor).ok());
+    let ready = grid
+        .first()
+        .and_then(|first| at(first).ready(Integrator::Taylor).ok());
     let one = |&(number, values): &(usize, &Vec<f64>)| {
         if course.interrupt.is_requested() {
             return Ok(None);

@@ -1,15 +1,18 @@
-//! omega^2 of a conservative motion as a power series in its amplitude, from the integral of the period.
+//! omega^2 of a conservative motion as a power series in its amplitude, from the integral of the
+//! period.
 //!
-//! Reference: L. D. Landau and E. M. Lifshitz, *Mechanics*, 3rd ed., sections 11 and 12. In units of the linear frequency,
-//! with `q(y) = 2 V(y)/y^2 = 1 + ...`, `w = y sqrt(q)` and its inverse `y = g(w)`:
+//! Reference: L. D. Landau and E. M. Lifshitz, *Mechanics*, 3rd ed., sections 11 and 12. In units
+//! of the linear frequency, with `q(y) = 2 V(y)/y^2 = 1 + ...`, `w = y sqrt(q)` and its inverse
+//! `y = g(w)`:
 //!
 //! ```text
 //! T/(2 pi) = sum_(j even) g'_j (j-1)!!/j!! w(A)^j,      g'_j = [y^j] q^(-(j+1)/2)      (Lagrange's inversion)
 //! omega^2  = (T/(2 pi))^(-2)
 //! ```
 //!
-//! The inversion loses more digits than a double has, so the sums run in whole numbers over a large power of two. The
-//! coefficients are then those of a force that differs from the given one by the rounding of its Taylor coefficients.
+//! The inversion loses more digits than a double has, so the sums run in whole numbers over a large
+//! power of two. The coefficients are then those of a force that differs from the given one by the
+//! rounding of its Taylor coefficients.
 
 use num_traits::{One, Zero};
 
@@ -19,8 +22,8 @@ use crate::exact::{Integer, Rational};
 /// Bits behind the point.
 const BITS: usize = 768;
 
-/// The coefficients of `A^0, A^1, ...` of `omega^2/omega_0^2`, as many as there are of the force; `force[k]` belongs to `y^k`,
-/// `force[1]` is one. `None` where a number is not finite.
+/// The coefficients of `A^0, A^1, ...` of `omega^2/omega_0^2`, as many as there are of the force;
+/// `force[k]` belongs to `y^k`, `force[1]` is one. `None` where a number is not finite.
 pub(super) fn amplitude_series(force: &[f64]) -> Option<Vec<f64>> {
     let fixed = |value: f64| Some(whole(&from_f64(value)?));
     // 2 V/y^2: the coefficient of y^(k-1) is 2 f_k/(k+1).
@@ -38,7 +41,8 @@ pub(super) fn amplitude_series(force: &[f64]) -> Option<Vec<f64>> {
     }
     let mut one = vec![Integer::zero(); length];
     one[0] = Integer::one() << BITS;
-    let (mut period, mut of_energy, mut of_inverse) = (vec![Integer::zero(); length], one, inverse_root.clone());
+    let (mut period, mut of_energy, mut of_inverse) =
+        (vec![Integer::zero(); length], one, inverse_root.clone());
     let mut mean = Integer::one() << BITS;
     for j in (0..length).step_by(2) {
         let weight = (&of_inverse[j] * &mean) >> BITS;
@@ -73,7 +77,8 @@ fn multiply(left: &[Integer], right: &[Integer]) -> Vec<Integer> {
         .collect()
 }
 
-/// `u^(halves/2)` of a series that begins with one: `n p_n = sum_(k=1..n) (a k - n + k) u_k p_(n-k)`.
+/// `u^(halves/2)` of a series that begins with one:
+/// `n p_n = sum_(k=1..n) (a k - n + k) u_k p_(n-k)`.
 fn power(u: &[Integer], halves: i64) -> Vec<Integer> {
     let mut p = vec![Integer::one() << BITS];
     for n in 1..u.len() {
@@ -102,7 +107,9 @@ mod tests {
             ("x'' + sin(x) = 0", (0..=17).map(sine).collect()),
             (
                 "x'' + x + x^2 = 0",
-                (0..=17).map(|k| if k == 1 || k == 2 { 1.0 } else { 0.0 }).collect(),
+                (0..=17)
+                    .map(|k| if k == 1 || k == 2 { 1.0 } else { 0.0 })
+                    .collect(),
             ),
             ("x'' + x + x^3/2 - x^4 = 0", {
                 let mut force = vec![0.0; 18];

@@ -1,4 +1,5 @@
-//! The backbone curve: the true frequency against the amplitude, and the amplitudes at which it may turn fast.
+//! The backbone curve: the true frequency against the amplitude, and the amplitudes at which it may
+//! turn fast.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -27,11 +28,12 @@ pub(super) struct TrueBackbone<'a> {
 /// How far beyond the amplitude asked for a motion without escape is looked at.
 const FARTHEST: f64 = 100.0;
 
-/// The same where each frequency is found step by step: what velocities add may grow without a bound.
+/// The same where each frequency is found step by step: what velocities add may grow without a
+/// bound.
 const FARTHEST_BY_STEPS: f64 = 2.0;
 
-/// Evaluations of the force that one true frequency may take, and all of them together: some seconds of work. A force that
-/// waves thousands of times along a motion is looked at less far.
+/// Evaluations of the force that one true frequency may take, and all of them together: some
+/// seconds of work. A force that waves thousands of times along a motion is looked at less far.
 const MOST_FOR_ONE: f64 = 3e7;
 const MOST: u64 = 100_000_000;
 
@@ -64,7 +66,8 @@ impl<'a> TrueBackbone<'a> {
             false => FARTHEST_BY_STEPS,
         };
         let at_origin = meant.equilibrium.is_zero();
-        let symmetric = at_origin && is_odd(&oscillator.force, oscillator.coordinate).unwrap_or(false);
+        let symmetric =
+            at_origin && is_odd(&oscillator.force, oscillator.coordinate).unwrap_or(false);
         backbone.places = backbone.reached_places(symmetric).unwrap_or_default();
         backbone
     }
@@ -92,7 +95,8 @@ impl<'a> TrueBackbone<'a> {
         self.well.map_or(0.0, |well| well.smallest_amplitude())
     }
 
-    /// Whether the motions run over hilltops beyond the equilibrium, of a force that goes up and down again and again.
+    /// Whether the motions run over hilltops beyond the equilibrium, of a force that goes up and
+    /// down again and again.
     pub(super) fn has_waves_of_hilltops(&self) -> bool {
         let inner = self.well.and_then(|well| well.inner);
         let rest = self.physics.as_ref().map(|physics| &physics.rest);
@@ -103,8 +107,11 @@ impl<'a> TrueBackbone<'a> {
 
     /// The end of what is looked at.
     pub(super) fn farthest(&self) -> f64 {
-        f64::min(0.999 * self.largest_amplitude(), self.times * self.asked().abs())
-            .max(self.asked().abs().min(self.largest_amplitude()))
+        f64::min(
+            0.999 * self.largest_amplitude(),
+            self.times * self.asked().abs(),
+        )
+        .max(self.asked().abs().min(self.largest_amplitude()))
     }
 
     /// The true frequency; `None` where the motion is not periodic.
@@ -122,8 +129,9 @@ impl<'a> TrueBackbone<'a> {
         found
     }
 
-    /// Sizes of the amplitude at which either turning point stands on a corner or a narrow place. Of the many of a force that
-    /// waves all the way some are enough, for between points the error is followed by halving.
+    /// Sizes of the amplitude at which either turning point stands on a corner or a narrow place.
+    /// Of the many of a force that waves all the way some are enough, for between points the error
+    /// is followed by halving.
     fn reached_places(&self, symmetric: bool) -> Option<Vec<f64>> {
         const MOST_PLACES: usize = 64;
         /// A root takes about as many turning points.
@@ -180,13 +188,16 @@ impl<'a> TrueBackbone<'a> {
                 1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0,
             ];
             sizes.extend(above.map(|part| inner * (1.0 + part)));
-            sizes.extend((1..LINEAR).map(|k| inner + (farthest - inner) * k as f64 / LINEAR as f64));
+            sizes
+                .extend((1..LINEAR).map(|k| inner + (farthest - inner) * k as f64 / LINEAR as f64));
         }
         sizes.extend(&self.places);
         sizes.push(asked);
         sizes.retain(|size| *size > inner && *size <= farthest);
         sizes.sort_by(f64::total_cmp);
-        sizes.dedup_by(|second, first| *second != asked && *first != asked && *second - *first < 1e-9 * *first);
+        sizes.dedup_by(|second, first| {
+            *second != asked && *first != asked && *second - *first < 1e-9 * *first
+        });
         sizes
     }
 }

@@ -1,9 +1,10 @@
-//! The condition of the max-min approach, decided at given numbers: whether `f(x)/x` runs from its value at rest to that at the
-//! turning point without leaving what lies between, and its least and largest value where it does.
+//! The condition of the max-min approach, decided at given numbers: whether `f(x)/x` runs from its
+//! value at rest to that at the turning point without leaving what lies between, and its least and
+//! largest value where it does.
 //!
-//! By the comparison theorem of C. Sturm the true omega^2 of an odd force lies between the least and the largest of `f(x)/x`
-//! over `0 < x <= A`, whatever happens between (E. A. Coddington, N. Levinson, *Theory of Ordinary Differential Equations*,
-//! McGraw-Hill 1955, chapter 8).
+//! By the comparison theorem of C. Sturm the true omega^2 of an odd force lies between the least
+//! and the largest of `f(x)/x` over `0 < x <= A`, whatever happens between (E. A. Coddington, N.
+//! Levinson, *Theory of Ordinary Differential Equations*, McGraw-Hill 1955, chapter 8).
 
 use std::collections::BTreeMap;
 
@@ -20,8 +21,13 @@ use crate::symbol::letters::{AMPLITUDE, FREQUENCY};
 /// How far `f/x` must have moved to count, relatively: less may be rounding.
 const VISIBLE: f64 = 1e-12;
 
-/// What the bounds of the max-min approach are at these numbers; outside where they are not those at rest and at `x = A`.
-pub(super) fn bounds(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Range> {
+/// What the bounds of the max-min approach are at these numbers; outside where they are not those
+/// at rest and at `x = A`.
+pub(super) fn bounds(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Option<Range> {
     if solution.method != Method::MaxMin {
         return None;
     }
@@ -76,7 +82,8 @@ pub(super) fn bounds(oscillator: &Oscillator, solution: &Solution, numbers: &BTr
     Some(Range { text, outside })
 }
 
-/// `x` and `f(x)/x` from rest to the amplitude, at all places where it may turn back; `None` where it has no value.
+/// `x` and `f(x)/x` from rest to the amplitude, at all places where it may turn back; `None` where
+/// it has no value.
 fn course(force: &Force, amplitude: f64) -> Option<Vec<(f64, f64)>> {
     const LINEAR: i32 = 512;
     /// Towards rest by decades.
@@ -85,7 +92,10 @@ fn course(force: &Force, amplitude: f64) -> Option<Vec<(f64, f64)>> {
     let mut places: Vec<f64> = (1..=LINEAR)
         .map(|k| amplitude * f64::from(k) / f64::from(LINEAR))
         .collect();
-    places.extend((1..=DECADES * PER_DECADE).map(|k| amplitude * 10.0_f64.powf(-f64::from(k) / f64::from(PER_DECADE))));
+    places.extend(
+        (1..=DECADES * PER_DECADE)
+            .map(|k| amplitude * 10.0_f64.powf(-f64::from(k) / f64::from(PER_DECADE))),
+    );
     // A jump has two sides.
     let cuts = force.cuts(0.0, amplitude);
     places.extend(
@@ -109,7 +119,10 @@ fn course(force: &Force, amplitude: f64) -> Option<Vec<(f64, f64)>> {
         }
     }
     course.sort_by(|one, other| one.0.total_cmp(&other.0));
-    course.iter().all(|point| point.1.is_finite()).then_some(course)
+    course
+        .iter()
+        .all(|point| point.1.is_finite())
+        .then_some(course)
 }
 
 /// The first place at which the values turn back by more than rounding.
@@ -163,7 +176,9 @@ mod tests {
         let solution = solve(&oscillator, &options).unwrap();
         let mut values = Values::default();
         for (name, value) in at {
-            values.insert((*name).into(), value.parse().unwrap()).unwrap();
+            values
+                .insert((*name).into(), value.parse().unwrap())
+                .unwrap();
         }
         let verification = judge(&oscillator, &solution, &values, 0.01).unwrap();
         let range = verification
@@ -232,7 +247,14 @@ mod tests {
                 5e11,
                 5e12,
             ),
-            ("x'' + x + x*abs(x) = 0", &[("A", "1e9")], false, "rises", 1.0, 1e9),
+            (
+                "x'' + x + x*abs(x) = 0",
+                &[("A", "1e9")],
+                false,
+                "rises",
+                1.0,
+                1e9,
+            ),
             // 1 + b H(x - 1)/x steps up and comes down again.
             (
                 "x'' + x + b*H(x - 1) - b*H(-x - 1) = 0",
@@ -245,8 +267,16 @@ mod tests {
         ];
         for (equation, at, outside, words, least, largest) in cases {
             let (range, squared) = decided(equation, at);
-            assert_eq!(range.outside, outside, "{equation} at {at:?}: {}", range.text);
-            assert!(range.text.contains(words), "{equation} at {at:?}: {}", range.text);
+            assert_eq!(
+                range.outside, outside,
+                "{equation} at {at:?}: {}",
+                range.text
+            );
+            assert!(
+                range.text.contains(words),
+                "{equation} at {at:?}: {}",
+                range.text
+            );
             let (one, other) = pair(&range.text);
             assert!(
                 (one / least - 1.0).abs() < 1e-5 && (other / largest - 1.0).abs() < 1e-5,

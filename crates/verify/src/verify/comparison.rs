@@ -1,7 +1,8 @@
 //! Every method on one equation, judged against one true motion.
 //!
-//! In: an equation, numbers for its symbols, a tolerance. Out: a [`Comparison`], a row for each method that applies and a reason
-//! for each that does not; from it omega against the amplitude, a [`Backbone`] a method.
+//! In: an equation, numbers for its symbols, a tolerance. Out: a [`Comparison`], a row for each
+//! method that applies and a reason for each that does not; from it omega against the amplitude, a
+//! [`Backbone`] a method.
 
 use std::collections::BTreeMap;
 
@@ -10,8 +11,8 @@ use super::orbit::TrueMotion;
 use super::reach::reach;
 use super::validity::{self, Reach};
 use super::{
-    Verdict, VerificationError, checked_numbers, formula_frequency_along, judge, largest_deviation, meant,
-    numbers_or_reason,
+    Verdict, VerificationError, checked_numbers, formula_frequency_along, judge, largest_deviation,
+    meant, numbers_or_reason,
 };
 use crate::decimal::{decimal, significant};
 use crate::expr::Equation;
@@ -34,13 +35,15 @@ pub struct Row {
     pub frequency: Option<f64>,
     /// Why there is none.
     pub reason: Option<NoNumbers>,
-    /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as they were solved for.
+    /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as
+    /// they were solved for.
     pub chosen: Vec<(Symbol, f64)>,
     /// `frequency / true_frequency - 1`.
     pub relative_error: Option<f64>,
     /// Largest deviation of the motion over one true period, over the amplitude.
     pub max_deviation: Option<f64>,
-    /// The range in which the frequency is within the tolerance, of the amplitude of the table's first row.
+    /// The range in which the frequency is within the tolerance, of the amplitude of the table's
+    /// first row.
     pub reach: Option<Reach>,
     /// The verdict on the frequency; `None` where the true one is not known.
     pub verdict: Option<Verdict>,
@@ -112,8 +115,8 @@ pub enum ComparisonError {
     Verification(#[from] VerificationError),
 }
 
-/// The variants of each method that are compared: the defaults, both orders of averaging, the three of driven multiple scales and, for
-/// homotopy perturbation, the first order as well.
+/// The variants of each method that are compared: the defaults, both orders of averaging, the three
+/// of driven multiple scales and, for homotopy perturbation, the first order as well.
 fn variants(oscillator: &Oscillator, small: Option<&str>) -> Vec<Options> {
     let parts = oscillator.parts().ok();
     let driven = parts.as_ref().is_some_and(|parts| !parts.forcing.is_zero());
@@ -122,7 +125,8 @@ fn variants(oscillator: &Oscillator, small: Option<&str>) -> Vec<Options> {
         method: Some(method),
         small: small.map(str::to_owned),
         // Of a motion that loses nothing every row has the same amplitude.
-        amplitude: (method == Method::Averaging && conserves).then_some(AmplitudeConvention::Initial),
+        amplitude: (method == Method::Averaging && conserves)
+            .then_some(AmplitudeConvention::Initial),
         ..Options::default()
     };
     let mut variants = Vec::new();
@@ -232,17 +236,28 @@ pub fn compare(
     })
 }
 
-/// What every method says: periodic motions, slow ones that settle on none, and refusals of those that say nothing else.
-fn answers(oscillator: &Oscillator, at: &Values, small: Option<&str>) -> (Vec<Solution>, Vec<Solution>, Vec<Refused>) {
+/// What every method says: periodic motions, slow ones that settle on none, and refusals of those
+/// that say nothing else.
+fn answers(
+    oscillator: &Oscillator,
+    at: &Values,
+    small: Option<&str>,
+) -> (Vec<Solution>, Vec<Solution>, Vec<Refused>) {
     let (mut solutions, mut slow, mut refused) = (Vec::new(), Vec::new(), Vec::new());
-    let in_a_parameter = small.is_none() && !matches!(oscillator.small_parameter(None), Ok(SmallParameter::Amplitude));
+    let in_a_parameter = small.is_none()
+        && !matches!(
+            oscillator.small_parameter(None),
+            Ok(SmallParameter::Amplitude)
+        );
     for options in variants(oscillator, small) {
         let solved = |options: &Options| {
-            with_resonance_at(oscillator, options, at).and_then(|options| solve(oscillator, &options))
+            with_resonance_at(oscillator, options, at)
+                .and_then(|options| solve(oscillator, &options))
         };
         let mut found = solved(&options);
         if found.is_err() && in_a_parameter {
-            // Where the parameter that is small by default leaves a method nothing to expand in, the amplitude may be.
+            // Where the parameter that is small by default leaves a method nothing to expand in,
+            // the amplitude may be.
             let by_amplitude = solved(&Options {
                 small: Some(AmplitudeConvention::Initial.symbol().to_string()),
                 ..options.clone()
@@ -266,14 +281,18 @@ fn answers(oscillator: &Oscillator, at: &Values, small: Option<&str>) -> (Vec<So
                 None => slow.push(solution),
             },
             // What nothing tells the start of is no motion to compare.
-            (Ok(solution), Some(method)) if solution.response.is_none() && super::periodic(&solution).is_err() => {
+            (Ok(solution), Some(method))
+                if solution.response.is_none() && super::periodic(&solution).is_err() =>
+            {
                 refused.push(Refused {
                     method,
                     reason: Unsuited::NoSteadyAmplitude.to(method),
                 })
             }
             (Ok(solution), _) => solutions.push(solution),
-            (Err(reason), Some(method)) if refused.iter().all(|known: &Refused| known.method != method) => {
+            (Err(reason), Some(method))
+                if refused.iter().all(|known: &Refused| known.method != method) =>
+            {
                 refused.push(Refused { method, reason });
             }
             (Err(_), _) => {}
@@ -286,13 +305,17 @@ fn answers(oscillator: &Oscillator, at: &Values, small: Option<&str>) -> (Vec<So
             .any(|solution: &Solution| solution.method == method)
     };
     refused.retain(|refused: &Refused| !applies(refused.method));
-    solutions.dedup_by(|second, first| second.method == first.method && second.formula() == first.formula());
+    solutions.dedup_by(|second, first| {
+        second.method == first.method && second.formula() == first.formula()
+    });
     (solutions, slow, refused)
 }
 
-/// The values with `A` as the amplitude of the first harmonic, which is its leading term, where no method measures `A` itself.
+/// The values with `A` as the amplitude of the first harmonic, which is its leading term, where no
+/// method measures `A` itself.
 fn by_start(first: &Solution, at: &Values) -> Values {
-    let [initial, own] = [AmplitudeConvention::Initial, first.amplitude].map(AmplitudeConvention::symbol);
+    let [initial, own] =
+        [AmplitudeConvention::Initial, first.amplitude].map(AmplitudeConvention::symbol);
     let free = initial != own && first.limit_cycle.is_none() && at.get(own).is_none();
     if !free || at.get(initial).is_none() {
         return at.clone();
@@ -321,14 +344,20 @@ fn driven(
     for solution in solutions {
         let judged = super::judge(oscillator, solution, at, tolerance)?;
         frequency = frequency.or(judged.frequency);
-        let largest = judged.steady_states.iter().find(|judged| judged.state.is_stable());
+        let largest = judged
+            .steady_states
+            .iter()
+            .find(|judged| judged.state.is_stable());
         let words = match largest.map(|judged| (judged.state.amplitude, judged.true_amplitude)) {
             Some((own, Some(truth))) => format!(
                 "{FIRST_HARMONIC} = {} against a true {}",
                 significant(own, 6),
                 significant(truth, 6)
             ),
-            Some((own, None)) => format!("{FIRST_HARMONIC} = {}, and no true motion near it", significant(own, 6)),
+            Some((own, None)) => format!(
+                "{FIRST_HARMONIC} = {}, and no true motion near it",
+                significant(own, 6)
+            ),
             None => "no stable steady motion".to_owned(),
         };
         validity.push(format!(
@@ -408,7 +437,10 @@ fn of_transients(
             refused,
             validity,
         }),
-        None => Err(reason.map_or(ComparisonError::NoMethod(refused), ComparisonError::Verification)),
+        None => Err(reason.map_or(
+            ComparisonError::NoMethod(refused),
+            ComparisonError::Verification,
+        )),
     }
 }
 
@@ -451,7 +483,8 @@ pub struct Backbone {
     pub points: Vec<(f64, f64)>,
 }
 
-/// omega against the amplitude: the truth, and every method of the table; methods with one and the same curve together.
+/// omega against the amplitude: the truth, and every method of the table; methods with one and the
+/// same curve together.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -473,7 +506,9 @@ pub fn backbones(
     let missing = if first.slow().is_some() {
         Some("that of this motion changes; `derive --plot` draws it with its envelope")
     } else if first.response.is_some() {
-        Some("this motion has the frequency of the drive; `response --plot` draws its amplitude against that")
+        Some(
+            "this motion has the frequency of the drive; `response --plot` draws its amplitude against that",
+        )
     } else if first.limit_cycle.is_some() {
         Some("a limit cycle has one; `derive --plot` draws the motion")
     } else {
@@ -484,7 +519,9 @@ pub fn backbones(
     }
     let numbers = checked_numbers(first, &by_start(first, &comparison.at))?;
     let truth = validity::backbone(oscillator, first, &numbers);
-    let asked = numbers.get(&first.amplitude.symbol()).map_or(1.0, |value| value.abs());
+    let asked = numbers
+        .get(&first.amplitude.symbol())
+        .map_or(1.0, |value| value.abs());
     // To the escape, or to twice the amplitude asked for.
     let last = f64::min(truth.largest_amplitude() * 0.995, 2.0 * asked);
     // Motions over several wells begin at the separatrix.
@@ -515,7 +552,12 @@ pub fn backbones(
     {
         let followed = Known::default();
         let points = curve(&|amplitude| {
-            formula_frequency_along(oscillator, &row.solution, &truth.numbers_at(amplitude), &followed)
+            formula_frequency_along(
+                oscillator,
+                &row.solution,
+                &truth.numbers_at(amplitude),
+                &followed,
+            )
         });
         let same = |known: &&mut Backbone| {
             known.points.len() == points.len()

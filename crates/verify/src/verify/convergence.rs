@@ -1,7 +1,8 @@
 //! The radius of convergence of the series behind a formula, estimated from its coefficients.
 //!
-//! References: C. Domb, M. F. Sykes, Proc. R. Soc. Lond. A 240 (1957) 214-228 (ratios of coefficients); D. L. Hunter, G. A.
-//! Baker, Phys. Rev. B 19 (1979) 3808-3821 (recurrences of coefficients: integral approximants).
+//! References: C. Domb, M. F. Sykes, Proc. R. Soc. Lond. A 240 (1957) 214-228 (ratios of
+//! coefficients); D. L. Hunter, G. A. Baker, Phys. Rev. B 19 (1979) 3808-3821 (recurrences of
+//! coefficients: integral approximants).
 //!
 //! ```text
 //! one singularity at s_0:     c_k/c_(k-1) -> (1/s_0)(1 + b/k + ...)
@@ -9,8 +10,9 @@
 //!                             a_0 = 2 cos(phi)/R,  b_0 = -1/R^2
 //! ```
 //!
-//! An estimate is given only where two windows of coefficients, the last ones and those before, agree on it. Where a solution has
-//! exact coefficients enough they [say it themselves](converges), with as many digits as they support.
+//! An estimate is given only where two windows of coefficients, the last ones and those before,
+//! agree on it. Where a solution has exact coefficients enough they [say it themselves](converges),
+//! with as many digits as they support.
 
 use std::collections::BTreeMap;
 
@@ -50,8 +52,9 @@ const WINDOW: usize = 8;
 /// How well, relative to the radius, two windows must agree.
 const AGREEMENT: f64 = 0.01;
 
-/// How far the series of omega^2 in a solution converges, by its [own exact coefficients](crate::series::singularity); `None` where it
-/// has too few, or symbols that do not enter in step with the order, or none that show a law.
+/// How far the series of omega^2 in a solution converges, by its
+/// [own exact coefficients](crate::series::singularity); `None` where it has too few, or symbols
+/// that do not enter in step with the order, or none that show a law.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -72,8 +75,8 @@ pub fn converges(solution: &Solution) -> Option<Convergence> {
     })
 }
 
-/// That the series of omega^2 in a solution has no singularity, by its own exact coefficients: that it ends, or that they fall faster
-/// than the powers of any number; `None` where they say neither.
+/// That the series of omega^2 in a solution has no singularity, by its own exact coefficients: that
+/// it ends, or that they fall faster than the powers of any number; `None` where they say neither.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -95,7 +98,8 @@ pub fn converges_everywhere(solution: &Solution) -> Option<Note> {
     })
 }
 
-/// The series of omega^2 in the highest power of its variable that all of its terms have, with exact coefficients.
+/// The series of omega^2 in the highest power of its variable that all of its terms have, with
+/// exact coefficients.
 fn exact_coefficients(solution: &Solution) -> Option<(Monomial, Vec<Rational>)> {
     // Rounded coefficients have no more digits to give than those that are computed below.
     if solution.numerical {
@@ -104,10 +108,14 @@ fn exact_coefficients(solution: &Solution) -> Option<(Monomial, Vec<Rational>)> 
     let (mut variable, mut coefficients) = PowerSeries::of(solution, true).in_one_variable()?;
     if solution.method.counts() == Counts::Powers {
         // The powers to the order of the answer that are not in the law are zero.
-        let count = solution.order as usize / usize::try_from(PowerSeries::of(solution, true).step).ok()?;
+        let count =
+            solution.order as usize / usize::try_from(PowerSeries::of(solution, true).step).ok()?;
         coefficients.resize((count + 1).max(coefficients.len()), Rational::zero());
     }
-    let powers = coefficients.iter().enumerate().filter(|(_, value)| !value.is_zero());
+    let powers = coefficients
+        .iter()
+        .enumerate()
+        .filter(|(_, value)| !value.is_zero());
     let step = powers.fold(0, |common: usize, (power, _)| common.gcd(&power));
     if step > 1 {
         variable = variable.power(i32::try_from(step).ok()?);
@@ -116,8 +124,8 @@ fn exact_coefficients(solution: &Solution) -> Option<(Monomial, Vec<Rational>)> 
     Some((variable, coefficients))
 }
 
-/// The radius of convergence of the series of `solution` in its small parameter, in words; nothing where its coefficients show
-/// no law.
+/// The radius of convergence of the series of `solution` in its small parameter, in words; nothing
+/// where its coefficients show no law.
 pub(super) fn convergence(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -132,7 +140,12 @@ pub(super) fn convergence(
         true => in_the_amplitude(oscillator, solution, numbers, value)?,
         false => in_a_parameter(oscillator, solution, numbers, small)?,
     };
-    let even = series.coefficients.iter().skip(1).step_by(2).all(|c| *c == 0.0);
+    let even = series
+        .coefficients
+        .iter()
+        .skip(1)
+        .step_by(2)
+        .all(|c| *c == 0.0);
     let coefficients: Vec<f64> = series
         .coefficients
         .iter()
@@ -169,12 +182,21 @@ pub(super) fn convergence(
 }
 
 /// Whether the numbers lie within the radius that is known.
-fn at_numbers(solution: &Solution, known: &Convergence, numbers: &BTreeMap<Symbol, f64>) -> Option<Range> {
+fn at_numbers(
+    solution: &Solution,
+    known: &Convergence,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Option<Range> {
     let variable = Polynomial::term(known.variable.clone(), Rational::one());
-    let value = solution.evaluate(&variable, &|name| numbers.get(&name).copied()).ok()?;
+    let value = solution
+        .evaluate(&variable, &|name| numbers.get(&name).copied())
+        .ok()?;
     let radius = to_f64(&known.nearest.radius.value);
     let text = match known.in_symbol() {
-        Some((symbol, size)) => format!("the series converges for |{symbol}| < {}", decimal(to_f64(&size.value))),
+        Some((symbol, size)) => format!(
+            "the series converges for |{symbol}| < {}",
+            decimal(to_f64(&size.value))
+        ),
         None => format!(
             "the series converges for |{}| < {}",
             known.variable_in_words(),
@@ -193,12 +215,17 @@ struct Series {
     unit: f64,
 }
 
-/// The unit of `x` in which the largest Taylor coefficient of the force is of the size of the linear one, given the
-/// coefficients in another unit.
+/// The unit of `x` in which the largest Taylor coefficient of the force is of the size of the
+/// linear one, given the coefficients in another unit.
 fn growth(force: &[f64]) -> f64 {
     let linear = force[1];
     let rate = |(k, value): (usize, &f64)| (value / linear).abs().powf(1.0 / (k as f64 - 1.0));
-    force.iter().enumerate().skip(2).map(rate).fold(0.0, f64::max)
+    force
+        .iter()
+        .enumerate()
+        .skip(2)
+        .map(rate)
+        .fold(0.0, f64::max)
 }
 
 /// In the amplitude of a force of the position alone.
@@ -214,8 +241,11 @@ fn in_the_amplitude(
     }
     let force = with_numbers(oscillator, numbers, solution.amplitude.symbol())?.force;
     let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
-    let taylor = |unit: f64, degree: usize| numeric_taylor(&force, oscillator.coordinate, equilibrium, unit, degree);
-    // First in the unit of the amplitude, then in that of the nonlinearity, in which powers neither vanish nor explode.
+    let taylor = |unit: f64, degree: usize| {
+        numeric_taylor(&force, oscillator.coordinate, equilibrium, unit, degree)
+    };
+    // First in the unit of the amplitude, then in that of the nonlinearity, in which powers neither
+    // vanish nor explode.
     let mut unit = amplitude.abs();
     for degree in [few, highest] {
         let rate = growth(&taylor(unit, degree)?);
@@ -260,7 +290,9 @@ fn in_a_parameter(
         // To leading order, which is where the series of a limit cycle begins.
         Some(cycle) => {
             let value_of = |symbol: Symbol| numbers.get(&symbol).copied();
-            solution.evaluate(&solution.leading(&cycle.amplitude), &value_of).ok()?
+            solution
+                .evaluate(&solution.leading(&cycle.amplitude), &value_of)
+                .ok()?
         }
         None => *numbers.get(&solution.amplitude.symbol())?,
     };
@@ -294,8 +326,9 @@ fn forget_odd_noise(coefficients: &mut [f64]) {
     }
 }
 
-/// The terms of the force at an amplitude, in units of the linear frequency and of a value of the small parameter that makes the largest
-/// one; and that value. `None` where the force is none of a few powers.
+/// The terms of the force at an amplitude, in units of the linear frequency and of a value of the
+/// small parameter that makes the largest one; and that value. `None` where the force is none of a
+/// few powers.
 fn in_numbers(
     oscillator: &Oscillator,
     numbers: &BTreeMap<Symbol, f64>,
@@ -360,7 +393,11 @@ fn in_numbers(
 }
 
 /// The equation with exact numbers for all parameters but one.
-fn with_numbers(oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>, but: Symbol) -> Option<Oscillator> {
+fn with_numbers(
+    oscillator: &Oscillator,
+    numbers: &BTreeMap<Symbol, f64>,
+    but: Symbol,
+) -> Option<Oscillator> {
     let names = oscillator.parameters.iter().filter(|&&name| name != but);
     let exact = |name: &Symbol| {
         let value = crate::decimal::rounded(*numbers.get(name)?);
@@ -370,7 +407,8 @@ fn with_numbers(oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>, but: S
     oscillator.with_values(&values).ok()
 }
 
-/// The nearest singularity of a power series, from its coefficients; `None` where they show no regular pattern.
+/// The nearest singularity of a power series, from its coefficients; `None` where they show no
+/// regular pattern.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -381,7 +419,8 @@ fn with_numbers(oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>, but: S
 pub fn nearest_singularity(coefficients: &[f64]) -> Option<Singularity> {
     let earlier = coefficients.len().checked_sub(3)?;
     let (last, before) = (estimate(coefficients)?, estimate(&coefficients[..earlier])?);
-    let agree = (last.radius / before.radius - 1.0).abs() < AGREEMENT && (last.angle - before.angle).abs() < 0.05;
+    let agree = (last.radius / before.radius - 1.0).abs() < AGREEMENT
+        && (last.angle - before.angle).abs() < 0.05;
     agree.then_some(last)
 }
 
@@ -403,7 +442,11 @@ fn estimate(coefficients: &[f64]) -> Option<Singularity> {
         let inverse = extrapolated(&window, &ratio)?;
         // The limit must be near the ratios themselves, or they follow no such law.
         if (inverse / ratio(last)).ln().abs() < 0.5 && inverse * signs > 0.0 {
-            let angle = if inverse > 0.0 { 0.0 } else { std::f64::consts::PI };
+            let angle = if inverse > 0.0 {
+                0.0
+            } else {
+                std::f64::consts::PI
+            };
             return Some(Singularity {
                 radius: 1.0 / inverse.abs(),
                 angle,
@@ -417,7 +460,10 @@ fn estimate(coefficients: &[f64]) -> Option<Singularity> {
 fn pair(coefficients: &[f64]) -> Option<Singularity> {
     const ROWS: usize = 16;
     const UNKNOWNS: usize = 6;
-    let first = coefficients.len().checked_sub(ROWS).filter(|first| *first >= 2)?;
+    let first = coefficients
+        .len()
+        .checked_sub(ROWS)
+        .filter(|first| *first >= 2)?;
     let mut matrix = DMatrix::zeros(ROWS, UNKNOWNS);
     let mut right = DVector::zeros(ROWS);
     for row in 0..ROWS {
@@ -439,7 +485,11 @@ fn pair(coefficients: &[f64]) -> Option<Singularity> {
         }
         right[row] = own / size;
     }
-    if matrix.iter().chain(right.iter()).any(|value| !value.is_finite()) {
+    if matrix
+        .iter()
+        .chain(right.iter())
+        .any(|value| !value.is_finite())
+    {
         return None;
     }
     let solved = matrix.clone().svd(true, true).solve(&right, 1e-14).ok()?;
@@ -479,9 +529,13 @@ mod tests {
                 series.push(series[k - 1] * (k as f64 - 1.5) / (k as f64 * s0));
             }
             let found = nearest_singularity(&series).unwrap();
-            assert!((found.radius / f64::abs(s0) - 1.0).abs() < 1e-4, "{found:?}");
+            assert!(
+                (found.radius / f64::abs(s0) - 1.0).abs() < 1e-4,
+                "{found:?}"
+            );
         }
-        // 1/(1 - 2 s cos(phi)/R + (s/R)^2): c_k = sin((k+1) phi)/(R^k sin phi), a pair of poles at R e^(+-i phi).
+        // 1/(1 - 2 s cos(phi)/R + (s/R)^2): c_k = sin((k+1) phi)/(R^k sin phi), a pair of poles at
+        // R e^(+-i phi).
         let (radius, phi) = (1.5_f64, 1.0_f64);
         let series: Vec<f64> = (0..=24)
             .map(|k| (f64::from(k + 1) * phi).sin() / (radius.powi(k) * phi.sin()))
@@ -515,12 +569,19 @@ mod tests {
             })
             .collect();
         assert_eq!(nearest_singularity(&factorials), None);
-        let noise: Vec<f64> = (0..=24).map(|k| f64::from((k * k * 7919) % 31) - 15.5).collect();
+        let noise: Vec<f64> = (0..=24)
+            .map(|k| f64::from((k * k * 7919) % 31) - 15.5)
+            .collect();
         assert_eq!(nearest_singularity(&noise), None);
         assert_eq!(pair(&noise), None);
         // Three equal waves obey no recurrence of two terms.
         let waves: Vec<f64> = (0..=24)
-            .map(|k| [0.6, 1.3, 2.2].map(|phi| (f64::from(k) * phi + phi).sin()).iter().sum())
+            .map(|k| {
+                [0.6, 1.3, 2.2]
+                    .map(|phi| (f64::from(k) * phi + phi).sin())
+                    .iter()
+                    .sum()
+            })
             .collect();
         assert_eq!(pair(&waves), None);
         // Ratios that change near the end leave it open where the singularity is.

@@ -1,7 +1,9 @@
-//! Steady motions of a driven oscillator against true ones: periodic motions of the equation as it was typed, found by shooting.
+//! Steady motions of a driven oscillator against true ones: periodic motions of the equation as it
+//! was typed, found by shooting.
 //!
-//! The slow equations say which steady motions there are and where to begin the search; the true motion, its amplitude and its
-//! Floquet multipliers come from Runge-Kutta on the original equation alone.
+//! The slow equations say which steady motions there are and where to begin the search; the true
+//! motion, its amplitude and its Floquet multipliers come from Runge-Kutta on the original equation
+//! alone.
 //!
 //! ```text
 //! relative_error = a_formula / a_true - 1,   a = amplitude of the harmonic q of the period 2 pi p/Omega
@@ -10,11 +12,14 @@
 //! slope          = log2(max_deviation at delta / at delta/2), delta before all that is small, the detuning among it
 //! ```
 //!
-//! Where two steady motions lead to one true motion, it belongs to the nearer of those that are as stable; for the other one the search goes on with the motions that
-//! are known kept away from, and what it finds counts where it is nearer to this steady motion than to any other that is as stable.
+//! Where two steady motions lead to one true motion, it belongs to the nearer of those that are as
+//! stable; for the other one the search goes on with the motions that are known kept away from, and
+//! what it finds counts where it is nearer to this steady motion than to any other that is as
+//! stable.
 //!
-//! Slow equations of order n are off by `delta^(n+1)`; the amplitude where they balance by `delta^n`, which is the slope to expect. It may
-//! be more where a coefficient of the error vanishes.
+//! Slow equations of order n are off by `delta^(n+1)`; the amplitude where they balance by
+//! `delta^n`, which is the slope to expect. It may be more where a coefficient of the error
+//! vanishes.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -49,7 +54,8 @@ pub struct JudgedState {
     pub max_deviation: Option<f64>,
 }
 
-/// The largest stable steady motion by the formula and the true one, over one period; `None` where there is no such motion.
+/// The largest stable steady motion by the formula and the true one, over one period; `None` where
+/// there is no such motion.
 pub(super) fn motions(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -58,8 +64,12 @@ pub(super) fn motions(
 ) -> Result<Option<Motions>, VerificationError> {
     let question = Question::new(oscillator, solution, response, at)?;
     let states = question.states();
-    let largest = states.iter().find(|state| state.is_stable()).or(states.first());
-    let Some((state, found)) = largest.and_then(|state| Some((*state, question.truth.near(&question.motion, *state)?)))
+    let largest = states
+        .iter()
+        .find(|state| state.is_stable())
+        .or(states.first());
+    let Some((state, found)) =
+        largest.and_then(|state| Some((*state, question.truth.near(&question.motion, *state)?)))
     else {
         return Ok(None);
     };
@@ -108,9 +118,16 @@ impl<'a> Question<'a> {
         response: &Response,
         numbers: BTreeMap<Symbol, f64>,
     ) -> Result<Self, VerificationError> {
-        let resonance = solution.modulation.as_ref().and_then(|slow| slow.resonance.as_ref());
-        let (p, q) = resonance.map_or((1, 1), |resonance| (resonance.times_linear, resonance.times_driving));
-        let driving = resonance.map_or(Ok(1.0), |resonance| resonance.driving_frequency.evaluate(&numbers))?;
+        let resonance = solution
+            .modulation
+            .as_ref()
+            .and_then(|slow| slow.resonance.as_ref());
+        let (p, q) = resonance.map_or((1, 1), |resonance| {
+            (resonance.times_linear, resonance.times_driving)
+        });
+        let driving = resonance.map_or(Ok(1.0), |resonance| {
+            resonance.driving_frequency.evaluate(&numbers)
+        })?;
         let period = TAU * f64::from(p) / driving.abs();
         Ok(Self {
             solution,
@@ -126,7 +143,8 @@ impl<'a> Question<'a> {
     }
 
     fn steady_motions(&self) -> SteadyMotions {
-        self.solution.steady_motions(&|name| self.numbers.get(&name).copied())
+        self.solution
+            .steady_motions(&|name| self.numbers.get(&name).copied())
     }
 
     /// What the formula leaves of the equation, over the force.
@@ -134,7 +152,11 @@ impl<'a> Question<'a> {
         let times = (0..SAMPLES).map(|k| self.truth.period * k as f64 / SAMPLES as f64);
         let (mut defects, mut forces) = (0.0, 0.0);
         for t in times {
-            let place = [t, self.motion.position(t, state), self.motion.velocity(t, state)];
+            let place = [
+                t,
+                self.motion.position(t, state),
+                self.motion.velocity(t, state),
+            ];
             let force = self.truth.force.call(&place);
             defects += (self.motion.acceleration(t, state) + force).powi(2);
             forces += force.powi(2);
@@ -142,14 +164,17 @@ impl<'a> Question<'a> {
         Some((defects / forces).sqrt()).filter(|value: &f64| value.is_finite())
     }
 
-    /// Every steady motion beside a true one; of two that lead to the same one, that has it which is as stable or else nearer. Of those
-    /// at an amplitude at which the series does not converge only what has a true motion of its own near by, and how many have none.
+    /// Every steady motion beside a true one; of two that lead to the same one, that has it which
+    /// is as stable or else nearer. Of those at an amplitude at which the series does not converge
+    /// only what has a true motion of its own near by, and how many have none.
     fn judged_states(&self) -> (Vec<JudgedState>, usize) {
         /// How far the true amplitude may be off.
         const NEAR: f64 = 0.3;
         let SteadyMotions { states, spurious } = self.steady_motions();
         let (count, states) = (states.len(), [states, spurious].concat());
-        let is_held = |state: &SteadyState| state.amplitude == 0.0 && self.truth.is_held(self.motion.equilibrium);
+        let is_held = |state: &SteadyState| {
+            state.amplitude == 0.0 && self.truth.is_held(self.motion.equilibrium)
+        };
         let found: Vec<Option<PeriodicMotion>> = states
             .iter()
             .enumerate()
@@ -170,20 +195,25 @@ impl<'a> Question<'a> {
             .collect();
         let same = |one: usize, other: usize| {
             let size = self.motion.size(self.truth.period, states[one]);
-            let (Some((x, v)), Some((y, w))) = (start_of(&found[one]), start_of(&found[other])) else {
+            let (Some((x, v)), Some((y, w))) = (start_of(&found[one]), start_of(&found[other]))
+            else {
                 return false;
             };
             (x - y).abs() < 1e-6 * size && (v - w).abs() < 1e-6 * size * self.frequency
         };
         let apart = |judged: &JudgedState| {
             let other_kind = judged.true_stable != Some(judged.state.is_stable());
-            judged.max_deviation.map(|deviation| (other_kind, deviation))
+            judged
+                .max_deviation
+                .map(|deviation| (other_kind, deviation))
         };
         let nearer = |one: usize, other: usize| {
             let [own, rival] = [one, other].map(|k| apart(&judged[k]));
             rival < own || rival == own && other < one
         };
-        let lost = |k: usize| (0..states.len()).any(|other| other != k && same(k, other) && nearer(k, other));
+        let lost = |k: usize| {
+            (0..states.len()).any(|other| other != k && same(k, other) && nearer(k, other))
+        };
         let mut known: Vec<[f64; 2]> = (0..states.len())
             .filter(|k| !lost(*k))
             .filter_map(|k| found[k].as_ref())
@@ -194,7 +224,10 @@ impl<'a> Question<'a> {
             let judged = judge(state, Some(&found));
             let own = apart(&judged)?;
             let others = states.iter().map(|other| judge(other, Some(&found)));
-            if others.filter_map(|other| apart(&other)).any(|other| other < own) {
+            if others
+                .filter_map(|other| apart(&other))
+                .any(|other| other < own)
+            {
                 return None;
             }
             known.extend(self.truth.starts(&found));
@@ -208,9 +241,14 @@ impl<'a> Question<'a> {
                 _ => another(&states[k]).unwrap_or_else(|| judge(&states[k], None)),
             })
             .collect();
-        let is_near = |judged: &JudgedState| judged.relative_error.is_some_and(|error| error.abs() <= NEAR);
+        let is_near = |judged: &JudgedState| {
+            judged
+                .relative_error
+                .is_some_and(|error| error.abs() <= NEAR)
+        };
         let doubtful = all.split_off(count);
-        let (kept, left_out): (Vec<JudgedState>, Vec<JudgedState>) = doubtful.into_iter().partition(is_near);
+        let (kept, left_out): (Vec<JudgedState>, Vec<JudgedState>) =
+            doubtful.into_iter().partition(is_near);
         if !kept.is_empty() {
             all.extend(kept);
             all.sort_by(|one, other| other.state.amplitude.total_cmp(&one.state.amplitude));
@@ -224,7 +262,8 @@ fn start_of(found: &Option<PeriodicMotion>) -> Option<(f64, f64)> {
     found.as_ref().map(|found| found.at(0.0))
 }
 
-/// All that is small is halved again and again, and the deviation of the same steady motion measured.
+/// All that is small is halved again and again, and the deviation of the same steady motion
+/// measured.
 fn slope(oscillator: &Oscillator, question: &Question, judged: &JudgedState) -> Option<f64> {
     const HALVINGS: i32 = 3;
     /// The truth is good to 1e-10, and a hundred times that is measured to a per cent.
@@ -237,7 +276,13 @@ fn slope(oscillator: &Oscillator, question: &Question, judged: &JudgedState) -> 
         }
         let smaller = smaller(oscillator, question.solution, &question.numbers, halvings)?;
         let response = smaller.solution.response.as_ref()?;
-        let question = Question::of_numbers(&smaller.oscillator, &smaller.solution, response, smaller.numbers).ok()?;
+        let question = Question::of_numbers(
+            &smaller.oscillator,
+            &smaller.solution,
+            response,
+            smaller.numbers,
+        )
+        .ok()?;
         let apart = |state: &SteadyState| (state.amplitude - judged.state.amplitude).abs();
         let states = question.states().into_iter();
         let alike = states.filter(|state| state.is_stable() == judged.state.is_stable());
@@ -274,15 +319,21 @@ pub(super) fn judge(
 ) -> Result<Verification, VerificationError> {
     let question = Question::new(oscillator, solution, response, at)?;
     let (states, spurious) = question.judged_states();
-    let judged = states.iter().find(|judged| judged.state.is_stable()).or(states.first());
-    let passed = judged.filter(|judged| judged.state.is_stable()).is_some_and(|judged| {
-        let agrees = judged.true_stable == Some(judged.state.is_stable());
-        // A motion without a part of its own has the drive's alone.
-        let error = judged.relative_error.or(judged.max_deviation);
-        agrees && error.is_some_and(|error| error.abs() <= tolerance)
-    });
+    let judged = states
+        .iter()
+        .find(|judged| judged.state.is_stable())
+        .or(states.first());
+    let passed = judged
+        .filter(|judged| judged.state.is_stable())
+        .is_some_and(|judged| {
+            let agrees = judged.true_stable == Some(judged.state.is_stable());
+            // A motion without a part of its own has the drive's alone.
+            let error = judged.relative_error.or(judged.max_deviation);
+            agrees && error.is_some_and(|error| error.abs() <= tolerance)
+        });
     let symbols = symbol_values(oscillator, solution, &question.numbers, None);
-    let moving = judged.filter(|judged| judged.true_amplitude.is_some() && judged.max_deviation.is_some());
+    let moving =
+        judged.filter(|judged| judged.true_amplitude.is_some() && judged.max_deviation.is_some());
     Ok(Verification {
         at: at.clone(),
         frequency: Some(question.frequency),
@@ -340,7 +391,11 @@ impl Truth {
         let force = oscillator
             .force
             .substitute_all(&numbers.iter().filter_map(exact).collect())?;
-        let arguments = [Symbol::new("t"), oscillator.coordinate, oscillator.velocity()];
+        let arguments = [
+            Symbol::new("t"),
+            oscillator.coordinate,
+            oscillator.velocity(),
+        ];
         Ok(Self {
             force: CompiledFunction::new(&force, &arguments)?,
             period,
@@ -349,7 +404,8 @@ impl Truth {
         })
     }
 
-    /// Whether what is at rest at a place stays there at all times, since it is driven back whichever way it begins to move.
+    /// Whether what is at rest at a place stays there at all times, since it is driven back
+    /// whichever way it begins to move.
     fn is_held(&self, place: f64) -> bool {
         const TIMES: usize = 64;
         const SPEED: f64 = 1e-12;
@@ -361,8 +417,14 @@ impl Truth {
         times.all(jumps)
     }
 
-    /// The true periodic motion to which Newton's method leads from one by the formula, none of those that begin at the known places.
-    fn by_newton(&self, motion: &Formula, state: SteadyState, known: &[[f64; 2]]) -> Option<PeriodicMotion> {
+    /// The true periodic motion to which Newton's method leads from one by the formula, none of
+    /// those that begin at the known places.
+    fn by_newton(
+        &self,
+        motion: &Formula,
+        state: SteadyState,
+        known: &[[f64; 2]],
+    ) -> Option<PeriodicMotion> {
         let start = [motion.position(0.0, state), motion.velocity(0.0, state)];
         let size = motion.size(self.period, state);
         let size = if size > 0.0 { size } else { 1.0 };
@@ -370,13 +432,16 @@ impl Truth {
         another_periodic_motion(&acceleration, self.period, start, size, known).ok()
     }
 
-    /// The true periodic motion near one by the formula; where a second one is near that is as stable as it, and the first is not, that one.
+    /// The true periodic motion near one by the formula; where a second one is near that is as
+    /// stable as it, and the first is not, that one.
     fn as_stable(&self, motion: &Formula, state: SteadyState) -> Option<PeriodicMotion> {
         /// How far the amplitude of the second may be off.
         const NEAR: f64 = 0.3;
         let found = self.near(motion, state)?;
         let is_alike = |found: &PeriodicMotion| found.attracts() == state.is_stable();
-        let is_near = |found: &PeriodicMotion| (state.amplitude / found.harmonic(self.own) - 1.0).abs() <= NEAR;
+        let is_near = |found: &PeriodicMotion| {
+            (state.amplitude / found.harmonic(self.own) - 1.0).abs() <= NEAR
+        };
         if is_alike(&found) || state.amplitude == 0.0 {
             return Some(found);
         }
@@ -413,30 +478,47 @@ impl Truth {
     }
 
     /// A true periodic motion near one by the formula that is none of the known ones.
-    fn another(&self, motion: &Formula, state: SteadyState, known: &[[f64; 2]]) -> Option<PeriodicMotion> {
+    fn another(
+        &self,
+        motion: &Formula,
+        state: SteadyState,
+        known: &[[f64; 2]],
+    ) -> Option<PeriodicMotion> {
         let start = [motion.position(0.0, state), motion.velocity(0.0, state)];
         let size = motion.size(self.period, state);
         let acceleration = |t: f64, x: f64, v: f64| -self.force.call(&[t, x, v]);
-        // From there, and from half-way to each motion that is known: near a fold the one that is looked for lies between.
+        // From there, and from half-way to each motion that is known: near a fold the one that is
+        // looked for lies between.
         let half_way = |known: &[f64; 2]| [0, 1].map(|index| 0.5 * (start[index] + known[index]));
         let mut starts = std::iter::once(start).chain(known.iter().map(half_way));
-        let search =
-            || starts.find_map(|start| another_periodic_motion(&acceleration, self.period, start, size, known).ok());
+        let search = || {
+            starts.find_map(|start| {
+                another_periodic_motion(&acceleration, self.period, start, size, known).ok()
+            })
+        };
         (size > 0.0).then(search).flatten()
     }
 
-    /// Where a true motion begins, and where it does a period of the drive later and so on, which are other starts of the same one.
+    /// Where a true motion begins, and where it does a period of the drive later and so on, which
+    /// are other starts of the same one.
     fn starts(&self, found: &PeriodicMotion) -> Vec<[f64; 2]> {
         let part = self.period / f64::from(self.drives);
         let start = |k: u32| found.at(part * f64::from(k)).into();
         (0..self.drives).map(start).collect()
     }
 
-    fn beside(&self, motion: &Formula, state: SteadyState, found: Option<&PeriodicMotion>) -> JudgedState {
+    fn beside(
+        &self,
+        motion: &Formula,
+        state: SteadyState,
+        found: Option<&PeriodicMotion>,
+    ) -> JudgedState {
         let own = found.map(|found| found.harmonic(self.own));
         let error = own.map(|own| state.amplitude / own - 1.0);
         let deviation = found.map(|found| {
-            let largest = largest_over(self.period, |t| (found.at(t).0 - motion.position(t, state)).abs());
+            let largest = largest_over(self.period, |t| {
+                (found.at(t).0 - motion.position(t, state)).abs()
+            });
             let size = largest_over(self.period, |t| (found.at(t).0 - motion.equilibrium).abs());
             if size == 0.0 { 0.0 } else { largest / size }
         });
@@ -466,9 +548,14 @@ impl Formula {
     ) -> Result<Self, VerificationError> {
         let value_of = |name: Symbol| numbers.get(&name).copied();
         let defined = solution.defined_values(&value_of).unwrap_or_default();
-        let known = numbers.iter().map(|(name, value)| (*name, *value)).chain(defined);
+        let known = numbers
+            .iter()
+            .map(|(name, value)| (*name, *value))
+            .chain(defined);
         let exact = |(name, value): (Symbol, f64)| Some((name, Expr::number(from_f64(value)?)));
-        let motion = response.motion.substitute_all(&known.filter_map(exact).collect())?;
+        let motion = response
+            .motion
+            .substitute_all(&known.filter_map(exact).collect())?;
         let t = Symbol::new("t");
         let phase = solution.modulation.as_ref().map_or(t, |slow| slow.phase);
         let arguments = [t, solution.amplitude.symbol(), phase];
@@ -495,7 +582,9 @@ impl Formula {
 
     fn size(&self, period: f64, state: SteadyState) -> f64 {
         const SAMPLES: usize = 64;
-        let place = |k: usize| (self.position(period * k as f64 / SAMPLES as f64, state) - self.equilibrium).abs();
+        let place = |k: usize| {
+            (self.position(period * k as f64 / SAMPLES as f64, state) - self.equilibrium).abs()
+        };
         (0..SAMPLES).map(place).fold(0.0, f64::max)
     }
 }

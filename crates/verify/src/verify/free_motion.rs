@@ -1,7 +1,9 @@
-//! The true motion that is not periodic: the equation as it was typed, followed from rest at its start.
+//! The true motion that is not periodic: the equation as it was typed, followed from rest at its
+//! start.
 //!
-//! In: the equation, numbers, where and how long. Out: a [`FreeMotion`] with its turning points and its crossings of the
-//! equilibrium. How a formula came about is not known here, and `tests/library/layers.rs` holds that wall.
+//! In: the equation, numbers, where and how long. Out: a [`FreeMotion`] with its turning points and
+//! its crossings of the equilibrium. How a formula came about is not known here, and
+//! `tests/library/layers.rs` holds that wall.
 
 use std::collections::BTreeMap;
 
@@ -35,12 +37,17 @@ enum Path {
 }
 
 /// The motion by values of the force alone; `None` where there is none.
-fn evaluated(oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>, start: &Start) -> Option<ode::Trajectory> {
+fn evaluated(
+    oscillator: &Oscillator,
+    numbers: &BTreeMap<Symbol, f64>,
+    start: &Start,
+) -> Option<ode::Trajectory> {
     const TOLERANCE: f64 = 1e-10;
     let known = numbers.iter();
     let known = known.filter_map(|(name, value)| Some((*name, Expr::number(from_f64(*value)?))));
     let force = oscillator.force.substitute_all(&known.collect()).ok()?;
-    let force = CompiledFunction::new(&force, &[oscillator.coordinate, oscillator.velocity()]).ok()?;
+    let force =
+        CompiledFunction::new(&force, &[oscillator.coordinate, oscillator.velocity()]).ok()?;
     let begin = ode::State {
         t: 0.0,
         x: start.equilibrium + start.distance,
@@ -50,7 +57,14 @@ fn evaluated(oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>, start: &S
         maximum_step: start.step,
         ..ode::Options::with_tolerance(TOLERANCE * start.distance.abs().min(1.0))
     };
-    ode::integrate(|_, x, v| -force.call(&[x, v]), begin, start.duration, &[], &options).ok()
+    ode::integrate(
+        |_, x, v| -force.call(&[x, v]),
+        begin,
+        start.duration,
+        &[],
+        &options,
+    )
+    .ok()
 }
 
 /// A motion with what is read off it.
@@ -89,9 +103,12 @@ impl FreeMotion {
         course.begin(oscillator.coordinate, start.equilibrium + start.distance)?;
         let motion = course.follow()?;
         let (end, motion) = match motion.end() < start.duration {
-            // A root of the velocity, say, is no power series where it turns; by its values alone the motion goes on.
+            // A root of the velocity, say, is no power series where it turns; by its values alone
+            // the motion goes on.
             true => match evaluated(oscillator, numbers, start) {
-                Some(other) if other.end().t > motion.end() => (other.end().t, Path::Evaluated(other)),
+                Some(other) if other.end().t > motion.end() => {
+                    (other.end().t, Path::Evaluated(other))
+                }
                 _ => (motion.end(), Path::Series(Box::new(motion))),
             },
             false => (start.duration, Path::Series(Box::new(motion))),
@@ -172,14 +189,15 @@ impl FreeMotion {
         self.crossings = crossings;
     }
 
-    /// When the velocity becomes zero and stays so, between a time at which it moves and one at which it is held.
+    /// When the velocity becomes zero and stays so, between a time at which it moves and one at
+    /// which it is held.
     fn begin_of_rest(&self, moves: f64, held: f64) -> f64 {
         let [_, begin] = bisect(|t| self.at(t).1 != 0.0, moves, held, Until::Width(0.0));
         begin
     }
 
-    /// When the line through the sizes at the turning points, and where it is held, straight on the logarithm, comes down to this
-    /// size.
+    /// When the line through the sizes at the turning points, and where it is held, straight on the
+    /// logarithm, comes down to this size.
     pub(super) fn falls_to(&self, size: f64) -> Option<f64> {
         let start = (0.0, self.at(0.0).0);
         let points: Vec<(f64, f64)> = std::iter::once(start)
@@ -191,8 +209,8 @@ impl FreeMotion {
             .windows(2)
             .position(|pair| pair[1].1 <= size && pair[0].1 > size)?;
         let [(t0, x0), (t1, x1)] = [points[index], points[index + 1]];
-        // Dry friction takes the same difference every half swing, viscous damping the same ratio: whichever the turning point before
-        // says.
+        // Dry friction takes the same difference every half swing, viscous damping the same ratio:
+        // whichever the turning point before says.
         let by_difference = index.checked_sub(1).is_some_and(|before| {
             let earlier = points[before].1;
             (earlier - x0 - (x0 - x1)).abs() < (x0 * x0 / earlier - x1).abs()

@@ -4,10 +4,12 @@ use crate::numeric::ode::root::find_minimum;
 
 use super::orbit::SAMPLES;
 
-/// The largest value from 0 to a period of what is never negative: among samples, and beside one from which the next are lower by more than a
-/// thousandth, between them. NaN where a sample has no value.
+/// The largest value from 0 to a period of what is never negative: among samples, and beside one
+/// from which the next are lower by more than a thousandth, between them. NaN where a sample has no
+/// value.
 pub(super) fn largest_over(period: f64, function: impl Fn(f64) -> f64) -> f64 {
-    /// A peak is looked for where its sample is at least this part of the largest one, and the next are lower by more than this part.
+    /// A peak is looked for where its sample is at least this part of the largest one, and the next
+    /// are lower by more than this part.
     const LARGE: f64 = 0.5;
     const CLOSE: f64 = 1e-3;
     let time = |index: usize| period * index as f64 / SAMPLES as f64;
@@ -21,8 +23,13 @@ pub(super) fn largest_over(period: f64, function: impl Fn(f64) -> f64) -> f64 {
         let neighbours = [index.saturating_sub(1), (index + 1).min(SAMPLES)];
         let below = neighbours.map(|neighbour| sample - samples[neighbour]);
         let is_peak = below.iter().all(|below| *below >= 0.0);
-        if is_peak && sample >= LARGE * largest && below.iter().any(|below| *below > CLOSE * sample) {
-            let (_, least) = find_minimum(|t| function(t).recip(), time(neighbours[0]), time(neighbours[1]));
+        if is_peak && sample >= LARGE * largest && below.iter().any(|below| *below > CLOSE * sample)
+        {
+            let (_, least) = find_minimum(
+                |t| function(t).recip(),
+                time(neighbours[0]),
+                time(neighbours[1]),
+            );
             found = found.max(least.recip());
         }
     }
@@ -33,12 +40,16 @@ pub(super) fn largest_over(period: f64, function: impl Fn(f64) -> f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A peak narrower than the distance of two samples is as high as it is; a wide one is left to its samples.
+    /// A peak narrower than the distance of two samples is as high as it is; a wide one is left to
+    /// its samples.
     #[test]
     fn a_narrow_peak_is_found_between_the_samples() {
         let peak = |width: f64| move |t: f64| 3.0 / (1.0 + ((t - 1.234_567) / width).powi(2));
         for width in [1e-2, 3e-3, 1e-3] {
-            assert!((largest_over(2.0, peak(width)) - 3.0).abs() < 1e-9, "{width}");
+            assert!(
+                (largest_over(2.0, peak(width)) - 3.0).abs() < 1e-9,
+                "{width}"
+            );
         }
         let wide = largest_over(2.0, peak(0.5));
         assert!(wide < 3.0 && wide > 3.0 * (1.0 - 1e-5), "{wide}");

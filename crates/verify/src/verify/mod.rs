@@ -1,12 +1,14 @@
 //! The judge: a formula against the true motion of the *original* equation.
 //!
-//! In: the equation, the answer of a method, numbers for all symbols, a tolerance. Out: a [`Verification`] with errors relative to
-//! the truth, a [`Verdict`] and the ranges in which the formula holds; in [`comparison`] the same for every method at once. Where
-//! there is no true periodic motion, a [`VerificationError`] says why.
+//! In: the equation, the answer of a method, numbers for all symbols, a tolerance. Out: a
+//! [`Verification`] with errors relative to the truth, a [`Verdict`] and the ranges in which the
+//! formula holds; in [`comparison`] the same for every method at once. Where there is no true
+//! periodic motion, a [`VerificationError`] says why.
 //!
-//! Nothing here looks at how a formula was derived. The true frequency comes from energy quadrature where energy is
-//! conserved and from the Runge-Kutta return where it is not; the motion from Runge-Kutta with dense output on the
-//! equation as it was typed, sine and all, not on its truncation.
+//! Nothing here looks at how a formula was derived. The true frequency comes from energy quadrature
+//! where energy is conserved and from the Runge-Kutta return where it is not; the motion from
+//! Runge-Kutta with dense output on the equation as it was typed, sine and all, not on its
+//! truncation.
 //!
 //! ```text
 //! relative_error = omega_formula / omega_true - 1
@@ -50,7 +52,8 @@ use crate::exact::Doubles;
 use crate::exact::rational::from_f64;
 use crate::expr::{EvaluationError, Expr, ExprError, LostDigits};
 use crate::method::numbers::{
-    Known, NoNumbers, Numbers, evaluate, frequency_squared_along, half_a_period, law_name, symbol_values,
+    Known, NoNumbers, Numbers, evaluate, frequency_squared_along, half_a_period, law_name,
+    symbol_values,
 };
 use crate::numeric::period::PeriodError;
 use crate::numeric::return_map::NoLimitCycle;
@@ -113,25 +116,31 @@ pub struct Verification {
     pub no_deviation: Option<String>,
     /// Root mean square of the equation's residual along the formula, over that of its force.
     pub residual: Option<f64>,
-    /// Measured exponent of the frequency error; of a motion followed from its start that of `max_deviation`, over times that grow as
-    /// what is small becomes less. `None` where rounding hides it, and for motions over several wells, which do not become small.
+    /// Measured exponent of the frequency error; of a motion followed from its start that of
+    /// `max_deviation`, over times that grow as what is small becomes less. `None` where rounding
+    /// hides it, and for motions over several wells, which do not become small.
     pub slope: Option<f64>,
-    /// Whether the motion runs over several wells through an unstable equilibrium: such motions have a least amplitude.
+    /// Whether the motion runs over several wells through an unstable equilibrium: such motions
+    /// have a least amplitude.
     pub over_several_wells: bool,
     /// Where the formula holds, in words and numbers; what lies outside is marked.
     pub ranges: Vec<validity::Range>,
-    /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as they were solved for.
+    /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as
+    /// they were solved for.
     pub chosen: Vec<(Symbol, f64)>,
-    /// The value of every symbol of the formulas, `omega` and `pi` included; those that have no real value are left out.
+    /// The value of every symbol of the formulas, `omega` and `pi` included; those that have no
+    /// real value are left out.
     pub values: Vec<(Symbol, f64)>,
     /// theta at `t = 0`: pi for a negative amplitude whose size stands in `values`, else 0.
     pub phase: f64,
     /// The motion in theta; `None` where the frequency is not real or the motion is not known.
     pub motion: Option<FourierSeries<Doubles>>,
-    /// Driven motions: every steady motion by the slow equations, largest first, beside the true one.
+    /// Driven motions: every steady motion by the slow equations, largest first, beside the true
+    /// one.
     pub steady_states: Vec<JudgedState>,
     /// Driven motions: how many steady motions of the truncated slow equations are
-    /// [left out](crate::solution::Solution::steady_motions), because they are none of the equation.
+    /// [left out](crate::solution::Solution::steady_motions), because they are none of the
+    /// equation.
     pub spurious: usize,
     /// Motions that are not periodic: what else is known of them.
     pub followed: Option<Followed>,
@@ -140,15 +149,16 @@ pub struct Verification {
 }
 
 impl Verification {
-    /// The verdict with what it was reached on: of a motion that changes frequency and amplitude both; of one that passes by its frequency
-    /// while the motion is further off, that as well.
+    /// The verdict with what it was reached on: of a motion that changes frequency and amplitude
+    /// both; of one that passes by its frequency while the motion is further off, that as well.
     pub fn verdict_in_words(&self, tolerance: f64) -> String {
         let within = significant(100.0 * tolerance, 3);
         self.verdict_on_both(tolerance)
             .unwrap_or_else(|| format!("{} (|relative error| <= {within} %)", self.verdict.name()))
     }
 
-    /// The verdict with the two numbers that it is about; `None` where the frequency alone says all of it.
+    /// The verdict with the two numbers that it is about; `None` where the frequency alone says all
+    /// of it.
     pub fn verdict_on_both(&self, tolerance: f64) -> Option<String> {
         let verdict = self.verdict.name();
         let within = significant(100.0 * tolerance, 3);
@@ -157,7 +167,9 @@ impl Verification {
             Some(error) => format!("{what} off by {} %", significant(100.0 * error, 3)),
             None => format!("{what} without a number"),
         };
-        let far_off = self.max_deviation.filter(|deviation| *deviation > tolerance);
+        let far_off = self
+            .max_deviation
+            .filter(|deviation| *deviation > tolerance);
         match (&self.followed, self.verdict, far_off) {
             (Some(followed), ..) => Some(format!(
                 "{verdict}: {}, {}",
@@ -211,7 +223,9 @@ pub enum VerificationError {
     #[error("the amplitude of the motion changes, so it has no period to be compared with")]
     NotPeriodic,
     /// A motion under drives whose frequencies have no ratio.
-    #[error("under drives whose frequencies have no ratio no motion repeats itself, and there is none to compare with")]
+    #[error(
+        "under drives whose frequencies have no ratio no motion repeats itself, and there is none to compare with"
+    )]
     NeverRepeats,
     /// The equation cannot be followed.
     #[error(transparent)]
@@ -271,7 +285,8 @@ impl VerificationError {
 fn letters_of(known: &[Symbol]) -> String {
     let names: Vec<&str> = known.iter().map(|name| name.written()).collect();
     match names.is_empty() {
-        true => ", which has no letters: it is judged without values, by `--tolerance 0.01` say".to_owned(),
+        true => ", which has no letters: it is judged without values, by `--tolerance 0.01` say"
+            .to_owned(),
         false => format!("; it has: {}", names.join(", ")),
     }
 }
@@ -337,8 +352,8 @@ pub fn judge(
 /// How much is judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
-    /// The motion at the values given, and nothing else: where motions are periodic, neither how its error grows nor how far the
-    /// formula is good, which takes most of the time.
+    /// The motion at the values given, and nothing else: where motions are periodic, neither how
+    /// its error grows nor how far the formula is good, which takes most of the time.
     Motion,
     /// All of it.
     Range,
@@ -372,7 +387,13 @@ pub fn judge_to(
     if let Some((converted, in_words)) = in_convention_of(oscillator, solution, at)? {
         let mut judged = judge_to(oscillator, solution, &converted, tolerance, extent)?;
         let text = in_words;
-        judged.ranges.insert(0, validity::Range { text, outside: false });
+        judged.ranges.insert(
+            0,
+            validity::Range {
+                text,
+                outside: false,
+            },
+        );
         return Ok(judged);
     }
     let settled = on_cycle(solution, at);
@@ -397,15 +418,25 @@ pub fn judge_to(
     let physics = Physics::new(oscillator, &meant, &numbers)?;
     let residual = motion
         .as_ref()
-        // The mean square of a force that is infinite at rest is nothing but what the samples nearest to it find.
-        .filter(|_| physics.force_at(0.0, 0.0).is_finite() && !physics.is_infinite_at_rest(truth.amplitude))
+        // The mean square of a force that is infinite at rest is nothing but what the samples
+        // nearest to it find.
+        .filter(|_| {
+            physics.force_at(0.0, 0.0).is_finite() && !physics.is_infinite_at_rest(truth.amplitude)
+        })
         .map(|(frequency, motion)| residual(&physics, *frequency, motion));
     let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
     let remark = found.as_ref().and_then(|found| found.remark.clone());
-    let remark = remark.map(|text| validity::Range { text, outside: false });
+    let remark = remark.map(|text| validity::Range {
+        text,
+        outside: false,
+    });
     let mut symbols = symbol_values(oscillator, solution, &numbers, found.as_ref());
-    if let Some(cycle) = settled.as_ref().and_then(|settled| settled.limit_cycle.as_ref()) {
-        // The formulas are those of any amplitude: where the motion settles it is the cycle's, whatever it was at the start.
+    if let Some(cycle) = settled
+        .as_ref()
+        .and_then(|settled| settled.limit_cycle.as_ref())
+    {
+        // The formulas are those of any amplitude: where the motion settles it is the cycle's,
+        // whatever it was at the start.
         let size = solution.evaluate(&cycle.amplitude, &|symbol| numbers.get(&symbol).copied());
         symbols
             .values
@@ -424,17 +455,26 @@ pub fn judge_to(
         true_frequency: truth.frequency,
         relative_error,
         judged_on: law_name(solution),
-        error_of_omega: series_of_omega(solution, &numbers).map(|omega| omega / truth.frequency - 1.0),
+        error_of_omega: series_of_omega(solution, &numbers)
+            .map(|omega| omega / truth.frequency - 1.0),
         max_deviation,
-        no_deviation: unfollowed(&truth, &physics, solution.coordinate()).filter(|_| motion.is_some()),
+        no_deviation: unfollowed(&truth, &physics, solution.coordinate())
+            .filter(|_| motion.is_some()),
         residual: residual.filter(|value| value.is_finite()),
-        slope: ranged.then(|| slope(oscillator, solution, &numbers)).flatten(),
+        slope: ranged
+            .then(|| slope(oscillator, solution, &numbers))
+            .flatten(),
         over_several_wells: validity::is_over_several_wells(oscillator, solution, &numbers),
         ranges: about_the_cycle(&truth, solution.coordinate())
             .filter(|_| attraction(solution, &numbers) != Some(0.0))
             .into_iter()
             .chain(remark)
-            .chain(cancellation(solution, &numbers, found.as_ref(), max_deviation))
+            .chain(cancellation(
+                solution,
+                &numbers,
+                found.as_ref(),
+                max_deviation,
+            ))
             .chain(far)
             .collect(),
         chosen: found.map_or_else(Vec::new, |found| found.chosen),
@@ -461,7 +501,8 @@ fn repeats(solution: &Solution) -> Result<(), VerificationError> {
     }
 }
 
-/// The question in the coordinate of its answer, where that is another one: relative to a base that moves.
+/// The question in the coordinate of its answer, where that is another one: relative to a base that
+/// moves.
 fn in_another_coordinate(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -472,8 +513,9 @@ fn in_another_coordinate(
     }
 }
 
-/// The values with the amplitude that the formula is written in, where that of the other convention is given instead, and what was
-/// converted in words: the true motion released at `A` has the first harmonic `a`. `None` where there is nothing to convert.
+/// The values with the amplitude that the formula is written in, where that of the other convention
+/// is given instead, and what was converted in words: the true motion released at `A` has the first
+/// harmonic `a`. `None` where there is nothing to convert.
 ///
 /// # Errors
 /// No true periodic motion of the amplitude given.
@@ -491,7 +533,11 @@ fn in_convention_of(
         return Ok(None);
     };
     let numbers = at.with(given.symbol(), size);
-    if solution.parameters.iter().any(|name| !numbers.contains_key(name)) {
+    if solution
+        .parameters
+        .iter()
+        .any(|name| !numbers.contains_key(name))
+    {
         return Ok(None);
     }
     let meant = Meant {
@@ -538,10 +584,13 @@ fn cancellation(
         ),
         outside: false,
     };
-    let law = found.map(|found| found.rounding).filter(|rounding| *rounding > SHOWN);
+    let law = found
+        .map(|found| found.rounding)
+        .filter(|rounding| *rounding > SHOWN);
     let value_of = |symbol: Symbol| numbers.get(&symbol).copied();
     let motion = max_deviation.zip(solution.rounding_of_motion_at(&value_of));
-    let motion = motion.filter(|(deviation, rounding)| *rounding > (OF_DEVIATION * deviation).max(SHOWN));
+    let motion =
+        motion.filter(|(deviation, rounding)| *rounding > (OF_DEVIATION * deviation).max(SHOWN));
     let law = law.map(|rounding| said(&format!("{FREQUENCY}^2"), rounding, "itself"));
     let motion = motion.map(|(_, rounding)| said("the motion", rounding, "the amplitude"));
     law.into_iter().chain(motion).collect()
@@ -549,7 +598,10 @@ fn cancellation(
 
 /// An error where the amplitude of a free motion changes.
 fn periodic(solution: &Solution) -> Result<(), VerificationError> {
-    let slow = solution.modulation.as_ref().filter(|_| solution.limit_cycle.is_none());
+    let slow = solution
+        .modulation
+        .as_ref()
+        .filter(|_| solution.limit_cycle.is_none());
     match slow.is_some_and(|slow| !slow.is_conservative()) {
         true => Err(VerificationError::NotPeriodic),
         false => Ok(()),
@@ -565,7 +617,10 @@ fn off_cycle(solution: &Solution, at: &Values) -> Option<Solution> {
 /// Slow equations where their motion has settled, unless a start is given.
 fn on_cycle(solution: &Solution, at: &Values) -> Option<Solution> {
     let started = at.get(AmplitudeConvention::Initial.symbol()).is_some();
-    solution.slow().filter(|_| !started).and_then(|_| solution.on_cycle())
+    solution
+        .slow()
+        .filter(|_| !started)
+        .and_then(|_| solution.on_cycle())
 }
 
 /// What the amplitude among the values is called: that of the start, where it changes.
@@ -584,8 +639,8 @@ pub fn checked(solution: &Solution, at: &Values) -> Result<(), VerificationError
     checked_numbers(solution, at).map(|_| ())
 }
 
-/// Refuses an amplitude at which the force has no digits left. The distance from the equilibrium counts, which is exact where the
-/// equilibrium is.
+/// Refuses an amplitude at which the force has no digits left. The distance from the equilibrium
+/// counts, which is exact where the equilibrium is.
 ///
 /// # Errors
 /// [`LostDigits`].
@@ -609,14 +664,19 @@ fn check_digits(
         name: amplitude_symbol(solution),
         ..lost
     };
-    Ok(force.check_digits(&there, &[coordinate]).map_err(of_amplitude)?)
+    Ok(force
+        .check_digits(&there, &[coordinate])
+        .map_err(of_amplitude)?)
 }
 
 /// The values as numbers.
 ///
 /// # Errors
 /// Missing or unknown values, or an amplitude of zero.
-fn checked_numbers(solution: &Solution, at: &Values) -> Result<BTreeMap<Symbol, f64>, VerificationError> {
+fn checked_numbers(
+    solution: &Solution,
+    at: &Values,
+) -> Result<BTreeMap<Symbol, f64>, VerificationError> {
     let needed = needed_values(solution);
     let mut known = solution.parameters.clone();
     if solution.response.is_none() || solution.in_time().is_some() {
@@ -629,7 +689,10 @@ fn checked_numbers(solution: &Solution, at: &Values) -> Result<BTreeMap<Symbol, 
     if let Some((name, _)) = at.iter().find(|(name, _)| !known.contains(name)) {
         return Err(VerificationError::Unknown { name, known });
     }
-    let missing: Vec<Symbol> = needed.into_iter().filter(|&name| at.get(name).is_none()).collect();
+    let missing: Vec<Symbol> = needed
+        .into_iter()
+        .filter(|&name| at.get(name).is_none())
+        .collect();
     if !missing.is_empty() {
         return Err(VerificationError::Missing(missing));
     }
@@ -656,8 +719,8 @@ pub struct Motions {
     pub envelope: Option<[Vec<(f64, f64)>; 2]>,
 }
 
-/// The motion by the formula and the true one, at the same instants of one true period, or as long as a motion that is not
-/// periodic is judged; `None` where the formula's frequency is not real.
+/// The motion by the formula and the true one, at the same instants of one true period, or as long
+/// as a motion that is not periodic is judged; `None` where the formula's frequency is not real.
 ///
 /// # Errors
 /// As for [`judge`].
@@ -716,8 +779,8 @@ pub fn motions(
     }))
 }
 
-/// The true motion that an answer is about, over one period, whether its formula has a value there or not; the answer is one of a
-/// periodic motion without a drive.
+/// The true motion that an answer is about, over one period, whether its formula has a value there
+/// or not; the answer is one of a periodic motion without a drive.
 ///
 /// # Errors
 /// As for [`judge`].
@@ -775,7 +838,11 @@ fn samples_of(truth: &TrueMotion) -> Vec<Sample> {
 }
 
 /// omega by the formula: the root of omega^2, `None` where that is not positive.
-fn formula_frequency(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
+fn formula_frequency(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Option<f64> {
     formula_frequency_along(oscillator, solution, numbers, &Known::default())
 }
 
@@ -797,9 +864,13 @@ fn numbers_or_reason(
     numbers: &BTreeMap<Symbol, f64>,
 ) -> (Option<Numbers>, Option<NoNumbers>) {
     match evaluate(oscillator, solution, numbers) {
-        Ok(found) if found.frequency_squared > 0.0 && found.frequency_squared.is_finite() => (Some(found), None),
+        Ok(found) if found.frequency_squared > 0.0 && found.frequency_squared.is_finite() => {
+            (Some(found), None)
+        }
         Ok(_) => (None, Some(NoNumbers::not_positive(solution))),
-        Err(NoNumbers::NoValue | NoNumbers::Undefined { .. }) if law_overflows(solution, numbers) => {
+        Err(NoNumbers::NoValue | NoNumbers::Undefined { .. })
+            if law_overflows(solution, numbers) =>
+        {
             let law = law_name(solution);
             (None, Some(NoNumbers::LawBeyond { law }))
         }
@@ -821,7 +892,9 @@ fn law_overflows(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> bool {
 fn series_of_omega(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
     solution.law.frequency_squared()?;
     let series = solution.law.frequency()?;
-    solution.evaluate(series, &|symbol| numbers.get(&symbol).copied()).ok()
+    solution
+        .evaluate(series, &|symbol| numbers.get(&symbol).copied())
+        .ok()
 }
 
 /// omega, the motion by the formula in theta, and what was chosen for it.
@@ -876,8 +949,15 @@ fn meant_motion(
 }
 
 /// The force about the equilibrium of an answer; `None` where a symbol of it has no number.
-fn force_of(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Force> {
-    let amplitude = numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0);
+fn force_of(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Option<Force> {
+    let amplitude = numbers
+        .get(&solution.amplitude.symbol())
+        .copied()
+        .unwrap_or(1.0);
     let (force, coordinate) = (&oscillator.force, oscillator.coordinate);
     Force::new(force, coordinate, &solution.equilibrium, numbers, amplitude)
 }
@@ -885,7 +965,11 @@ fn force_of(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Sym
 /// Where a true limit cycle lies and what it does to its neighbours.
 fn about_the_cycle(truth: &TrueMotion, coordinate: Symbol) -> Option<validity::Range> {
     let cycle = truth.limit_cycle()?;
-    let does = if cycle.attracts() { "attracts" } else { "repels" };
+    let does = if cycle.attracts() {
+        "attracts"
+    } else {
+        "repels"
+    };
     Some(validity::Range {
         text: format!(
             "the true limit cycle turns at {coordinate} = {} and {does}",
@@ -910,8 +994,13 @@ fn unfollowed(truth: &TrueMotion, physics: &Physics, coordinate: Symbol) -> Opti
     Some(format!("Runge-Kutta does not follow the true motion{why}"))
 }
 
-/// Largest `|x_true - x_formula|` over one true period, over the amplitude; `None` where the path is not known.
-fn largest_deviation(truth: &TrueMotion, frequency: f64, motion: &FourierSeries<Doubles>) -> Option<f64> {
+/// Largest `|x_true - x_formula|` over one true period, over the amplitude; `None` where the path
+/// is not known.
+fn largest_deviation(
+    truth: &TrueMotion,
+    frequency: f64,
+    motion: &FourierSeries<Doubles>,
+) -> Option<f64> {
     if !truth.has_path() {
         return None;
     }
@@ -920,7 +1009,8 @@ fn largest_deviation(truth: &TrueMotion, frequency: f64, motion: &FourierSeries<
     largest.is_finite().then_some(largest)
 }
 
-/// What is positive where the limit cycle of a formula attracts, negative where it repels, and zero where the amplitude is free.
+/// What is positive where the limit cycle of a formula attracts, negative where it repels, and zero
+/// where the amplitude is free.
 fn attraction(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
     let cycle = solution.limit_cycle.as_ref()?;
     let own = cycle.cycles.get(cycle.number.wrapping_sub(1))?;
@@ -945,9 +1035,14 @@ fn residual(physics: &Physics, frequency: f64, motion: &FourierSeries<Doubles>) 
     (defects / forces).sqrt()
 }
 
-/// The exponent with which the error of the frequency vanishes: the small parameter is halved until rounding begins to
-/// matter, and the slopes between halvings, which approach their limit linearly, are carried on to zero.
-fn slope(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
+/// The exponent with which the error of the frequency vanishes: the small parameter is halved until
+/// rounding begins to matter, and the slopes between halvings, which approach their limit linearly,
+/// are carried on to zero.
+fn slope(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Option<f64> {
     const HALVINGS: i32 = 12;
     // Motions over several wells do not become small.
     if validity::is_over_several_wells(oscillator, solution, numbers) {
@@ -958,10 +1053,13 @@ fn slope(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
         Some((oscillator, solution, numbers)) => (oscillator, solution, numbers),
         None => (oscillator, solution, numbers),
     };
-    // The truth is good to 1e-15 by quadrature, 1e-12 by one in pieces and 1e-11 by Runge-Kutta: an error hundreds of times
-    // that is measured to less than a per cent.
+    // The truth is good to 1e-15 by quadrature, 1e-12 by one in pieces and 1e-11 by Runge-Kutta: an
+    // error hundreds of times that is measured to less than a per cent.
     let conservative = oscillator.of_position_alone();
-    let amplitude = numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0);
+    let amplitude = numbers
+        .get(&solution.amplitude.symbol())
+        .copied()
+        .unwrap_or(1.0);
     let equilibrium = solution.equilibrium.evaluate(numbers).unwrap_or(0.0);
     let features = Features::new(&oscillator.force, oscillator.coordinate, numbers);
     let pieces = !features
@@ -982,11 +1080,16 @@ fn slope(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
     let error = |halving: i32| {
         let factor = 0.5_f64.powi(halving);
         let (formula, numbers) = formula_at(factor)?;
-        let truth = true_frequency(oscillator, &meant(oscillator, solution, &numbers), &numbers).ok()?;
+        let truth =
+            true_frequency(oscillator, &meant(oscillator, solution, &numbers), &numbers).ok()?;
         let error = (formula / truth - 1.0).abs();
-        // A closed form such as (cos(A) - 1)/A^2 loses digits at small amplitudes: what a change of the last bits does
-        // to it is no error of the formula.
-        let shakes = if solution.law.closed_form().is_some() { 4 } else { 0 };
+        // A closed form such as (cos(A) - 1)/A^2 loses digits at small amplitudes: what a change of
+        // the last bits does to it is no error of the formula.
+        let shakes = if solution.law.closed_form().is_some() {
+            4
+        } else {
+            0
+        };
         let shaken = (1..=shakes).filter_map(|k| formula_at(factor * (1.0 + f64::from(k) * 1e-14)));
         let noise = shaken
             .map(|(shaken, _)| (shaken / formula - 1.0).abs())
@@ -1000,10 +1103,13 @@ fn slope(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
     slopes_of(&errors)
 }
 
-/// The exponent of errors of which each belongs to half of what the one before does: the slopes between them, which approach their
-/// limit linearly, carried on to zero.
+/// The exponent of errors of which each belongs to half of what the one before does: the slopes
+/// between them, which approach their limit linearly, carried on to zero.
 fn slopes_of(errors: &[f64]) -> Option<f64> {
-    let slopes: Vec<f64> = errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
+    let slopes: Vec<f64> = errors
+        .windows(2)
+        .map(|pair| (pair[0] / pair[1]).log2())
+        .collect();
     match *slopes.as_slice() {
         [.., before, last] if (last - before).abs() < 0.5 => Some(2.0 * last - before),
         [.., last] => Some(last),
@@ -1011,8 +1117,9 @@ fn slopes_of(errors: &[f64]) -> Option<f64> {
     }
 }
 
-/// Where the small parameter marks terms with numbers before them: the equation with that parameter in it, so that it can be
-/// varied. What is not the linear restoring force is multiplied by `delta / value`.
+/// Where the small parameter marks terms with numbers before them: the equation with that parameter
+/// in it, so that it can be varied. What is not the linear restoring force is multiplied by
+/// `delta / value`.
 fn with_small_parameter(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -1031,10 +1138,13 @@ fn with_small_parameter(
     let stiffness = stiffness.substitute_all(&known).ok()?;
     let linear = &stiffness * &(&Expr::from(oscillator.coordinate) - &solution.equilibrium);
     let factor = Expr::divide(&Expr::from(delta), &own.meaning).ok()?;
-    let (mut oscillator, mut varied, mut numbers) = (oscillator.clone(), solution.clone(), numbers.clone());
+    let (mut oscillator, mut varied, mut numbers) =
+        (oscillator.clone(), solution.clone(), numbers.clone());
     oscillator.force = &linear + &(&factor * &(&oscillator.force - &linear));
     oscillator.parameters.push(delta);
-    varied.definitions.retain(|definition| definition.symbol != delta);
+    varied
+        .definitions
+        .retain(|definition| definition.symbol != delta);
     varied.parameters.push(delta);
     numbers.insert(delta, own.meaning.evaluate(&BTreeMap::new()).ok()?);
     Some((oscillator, varied, numbers))

@@ -1,6 +1,6 @@
-//! The true motion of an equation as it was typed: its period from the energy or the Runge-Kutta return, its path from
-//! Runge-Kutta. Which motion is meant comes as plain data ([`Meant`]); how a formula came about is not known here, and
-//! `tests/library/layers.rs` holds that wall.
+//! The true motion of an equation as it was typed: its period from the energy or the Runge-Kutta
+//! return, its path from Runge-Kutta. Which motion is meant comes as plain data ([`Meant`]); how a
+//! formula came about is not known here, and `tests/library/layers.rs` holds that wall.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -28,7 +28,8 @@ pub(super) struct Meant {
     pub(super) convention: AmplitudeConvention,
     /// Where it is a limit cycle: near which one.
     pub(super) limit_cycle: Option<NearCycle>,
-    /// About which omega to expect where the energy does not tell the period: how long to wait for the return, no more.
+    /// About which omega to expect where the energy does not tell the period: how long to wait for
+    /// the return, no more.
     pub(super) frequency: Option<f64>,
 }
 
@@ -36,14 +37,19 @@ pub(super) struct Meant {
 pub(super) struct NearCycle {
     /// About its amplitude.
     pub(super) amplitude: f64,
-    /// Of cycles close to each other it is the one that attracts, or does not; `None` where either will do.
+    /// Of cycles close to each other it is the one that attracts, or does not; `None` where either
+    /// will do.
     pub(super) attracts: Option<bool>,
 }
 
 impl Meant {
-    /// The amplitude among the numbers; one where there is none, as for a frequency that is free of it.
+    /// The amplitude among the numbers; one where there is none, as for a frequency that is free of
+    /// it.
     pub(super) fn amplitude_at(&self, numbers: &BTreeMap<Symbol, f64>) -> f64 {
-        numbers.get(&self.convention.symbol()).copied().unwrap_or(1.0)
+        numbers
+            .get(&self.convention.symbol())
+            .copied()
+            .unwrap_or(1.0)
     }
 }
 
@@ -100,7 +106,13 @@ impl TrueMotion {
             let frequency = TAU / cycle.period();
             let orbit = Orbit::LimitCycle(cycle);
             let equilibrium = physics.rest.equilibrium();
-            return Ok(Self::from_orbit(meant, numbers, orbit, frequency, equilibrium));
+            return Ok(Self::from_orbit(
+                meant,
+                numbers,
+                orbit,
+                frequency,
+                equilibrium,
+            ));
         }
         let start = physics.start(meant.amplitude_at(numbers))?;
         if physics.by_energy() && meant.convention == AmplitudeConvention::Initial {
@@ -165,9 +177,13 @@ impl TrueMotion {
         }
     }
 
-    /// The amplitude of this free motion by the other convention: of a release the first harmonic, of a first harmonic the release;
-    /// `None` where its path is not known.
-    pub(super) fn amplitude_by_the_other(&self, convention: AmplitudeConvention, equilibrium: f64) -> Option<f64> {
+    /// The amplitude of this free motion by the other convention: of a release the first harmonic,
+    /// of a first harmonic the release; `None` where its path is not known.
+    pub(super) fn amplitude_by_the_other(
+        &self,
+        convention: AmplitudeConvention,
+        equilibrium: f64,
+    ) -> Option<f64> {
         let orbit = self.orbit.as_ref()?;
         Some(match convention {
             AmplitudeConvention::Initial => first_harmonic(orbit).0,
@@ -182,7 +198,9 @@ impl TrueMotion {
 
     /// The time after which it begins again.
     pub(super) fn period(&self) -> f64 {
-        self.orbit.as_ref().map_or(TAU / self.frequency, Orbit::period)
+        self.orbit
+            .as_ref()
+            .map_or(TAU / self.frequency, Orbit::period)
     }
 
     /// The time, the true position and the true velocity at the time `t` of the formula.
@@ -200,7 +218,8 @@ impl TrueMotion {
 pub(super) struct Physics {
     /// The force at rest.
     pub(super) rest: Force,
-    /// What velocities add to it, as a function of position and velocity; `None` where the period follows from the energy.
+    /// What velocities add to it, as a function of position and velocity; `None` where the period
+    /// follows from the energy.
     moving: Option<CompiledFunction>,
     /// How long a motion is followed.
     longest: f64,
@@ -222,19 +241,23 @@ impl Physics {
             false => {
                 let velocities = Expr::sum([parts.inertia, parts.damping, parts.forcing]);
                 let moving = with_numbers(oscillator, &velocities, numbers)?;
-                (parts.restoring, Some(CompiledFunction::new(&moving, &[x, v])?))
+                (
+                    parts.restoring,
+                    Some(CompiledFunction::new(&moving, &[x, v])?),
+                )
             }
         };
         meant.equilibrium.evaluate(numbers)?;
         let rest = Force::new(&at_rest, x, &meant.equilibrium, numbers, amplitude);
         let mut physics = Self {
-            rest: rest.ok_or_else(|| VerificationError::Missing(without_number(oscillator, numbers)))?,
+            rest: rest
+                .ok_or_else(|| VerificationError::Missing(without_number(oscillator, numbers)))?,
             moving,
             longest: f64::INFINITY,
             convention: meant.convention,
         };
-        // A thousand periods as long as the answer expects, or of a linear force as strong at the start: a motion that has not turned by
-        // then is not swinging.
+        // A thousand periods as long as the answer expects, or of a linear force as strong at the
+        // start: a motion that has not turned by then is not swinging.
         let slowest = match meant.frequency.filter(|_| !physics.by_energy()) {
             Some(frequency) => frequency,
             None => {
@@ -246,7 +269,8 @@ impl Physics {
         Ok(physics)
     }
 
-    /// Whether the force grows without end towards rest, as `1/x` does; a motion as large as this is meant.
+    /// Whether the force grows without end towards rest, as `1/x` does; a motion as large as this
+    /// is meant.
     pub(super) fn is_infinite_at_rest(&self, amplitude: f64) -> bool {
         grows_towards_zero(&|y| self.force_at(y, 0.0), amplitude)
     }
@@ -259,7 +283,10 @@ impl Physics {
     /// The force at a distance from the equilibrium and a velocity.
     pub(super) fn force_at(&self, y: f64, v: f64) -> f64 {
         let position = self.rest.equilibrium() + y;
-        let moving = self.moving.as_ref().map_or(0.0, |moving| moving.call(&[position, v]));
+        let moving = self
+            .moving
+            .as_ref()
+            .map_or(0.0, |moving| moving.call(&[position, v]));
         self.rest.at(y) + moving
     }
 
@@ -305,20 +332,26 @@ impl Physics {
             acceleration: &|x, v| -self.force_at(x - equilibrium, v),
             equilibrium,
             amplitude,
-            frequency: if slope.sqrt().is_normal() { slope.sqrt() } else { 1.0 },
+            frequency: if slope.sqrt().is_normal() {
+                slope.sqrt()
+            } else {
+                1.0
+            },
         };
         Ok(nearest_limit_cycle(&equation, near.attracts)?)
     }
 
-    /// The distance from the equilibrium to start from: given, or found so that the first harmonic of the
-    /// true motion has the amplitude asked for.
+    /// The distance from the equilibrium to start from: given, or found so that the first harmonic
+    /// of the true motion has the amplitude asked for.
     pub(super) fn start(&self, amplitude: f64) -> Result<f64, VerificationError> {
         if self.convention == AmplitudeConvention::Initial {
             return Ok(amplitude);
         }
         let excess = |start: f64| {
             let path = self.swing(start, self.longest);
-            path.map_or(f64::NAN, |path| first_harmonic(&Orbit::Swing(path)).0 - amplitude)
+            path.map_or(f64::NAN, |path| {
+                first_harmonic(&Orbit::Swing(path)).0 - amplitude
+            })
         };
         let at = |factor: f64| factor * amplitude;
         for spread in [0.05, 0.2, 0.5] {
@@ -333,7 +366,10 @@ impl Physics {
 /// The parameters that have no number.
 fn without_number(oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>) -> Vec<Symbol> {
     let parameters = oscillator.parameters.iter();
-    parameters.filter(|name| !numbers.contains_key(name)).copied().collect()
+    parameters
+        .filter(|name| !numbers.contains_key(name))
+        .copied()
+        .collect()
 }
 
 /// An expression with exact numbers in place of the parameters.
@@ -350,7 +386,8 @@ fn with_numbers(
     expression.substitute_all(&values)
 }
 
-/// `(2/T) int x cos, (2/T) int x sin` over one period, by the trapezoidal rule, which is exact to rounding here.
+/// `(2/T) int x cos, (2/T) int x sin` over one period, by the trapezoidal rule, which is exact to
+/// rounding here.
 fn first_harmonic(orbit: &Orbit) -> (f64, f64) {
     let period = orbit.period();
     let sample = |k: usize| {

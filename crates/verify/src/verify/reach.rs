@@ -1,8 +1,10 @@
-//! How far a formula is good: the first amplitude at which the error of its frequency crosses the tolerance.
+//! How far a formula is good: the first amplitude at which the error of its frequency crosses the
+//! tolerance.
 //!
-//! The error is followed from rest outwards. Between two points it is taken to be as straight as its value in the middle says:
-//! where that leaves room for a crossing the stretch is halved. Where the force, or the formula, may turn fast (corners, narrow
-//! bumps, poles) there are points of their own, and the amplitude asked for is always among them.
+//! The error is followed from rest outwards. Between two points it is taken to be as straight as
+//! its value in the middle says: where that leaves room for a crossing the stretch is halved. Where
+//! the force, or the formula, may turn fast (corners, narrow bumps, poles) there are points of
+//! their own, and the amplitude asked for is always among them.
 
 use std::collections::BTreeMap;
 
@@ -18,15 +20,22 @@ use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
 
-/// Sizes of the amplitude at which a law may turn fast: the poles and narrow places of its closed form.
-pub(super) fn places_of_law(solution: &Solution, numbers: &BTreeMap<Symbol, f64>, to: f64) -> Vec<f64> {
+/// Sizes of the amplitude at which a law may turn fast: the poles and narrow places of its closed
+/// form.
+pub(super) fn places_of_law(
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    to: f64,
+) -> Vec<f64> {
     let symbol = solution.amplitude.symbol();
     let Some(form) = solution.law.closed_form() else {
         return vec![];
     };
     let mut law: Expr = form.value.clone();
     for definition in solution.definitions.iter().rev() {
-        law = law.substitute(definition.symbol, &definition.meaning).unwrap_or(law);
+        law = law
+            .substitute(definition.symbol, &definition.meaning)
+            .unwrap_or(law);
     }
     let features = Features::new(&law, symbol, numbers);
     let mut cuts = features.cuts(0.0, to);
@@ -37,7 +46,11 @@ pub(super) fn places_of_law(solution: &Solution, numbers: &BTreeMap<Symbol, f64>
         .filter(|pole| pole.width == 0.0)
         .map(|pole| pole.place)
         .collect();
-    cuts.extend(poles.iter().flat_map(|pole| [pole * (1.0 - 1e-6), pole * (1.0 + 1e-6)]));
+    cuts.extend(
+        poles
+            .iter()
+            .flat_map(|pole| [pole * (1.0 - 1e-6), pole * (1.0 + 1e-6)]),
+    );
     cuts.into_iter()
         .map(|place| place * to.signum())
         .filter(|size| *size > 0.0)
@@ -51,7 +64,8 @@ pub enum Reach {
     Everywhere(f64),
     /// Up to this amplitude.
     UpTo(f64),
-    /// Between two amplitudes, of motions over several wells, which do not begin at rest, and of a law that is outside near rest.
+    /// Between two amplitudes, of motions over several wells, which do not begin at rest, and of a
+    /// law that is outside near rest.
     Between {
         /// From this one on.
         from: f64,
@@ -68,7 +82,9 @@ impl Reach {
     /// Whether an amplitude is outside.
     pub fn leaves_out(self, amplitude: f64) -> bool {
         match self {
-            Self::Between { from, to, open } => amplitude.abs() < from.abs() || (!open && amplitude.abs() > to.abs()),
+            Self::Between { from, to, open } => {
+                amplitude.abs() < from.abs() || (!open && amplitude.abs() > to.abs())
+            }
             Self::Everywhere(_) => false,
             Self::UpTo(end) => amplitude.abs() > end.abs(),
             Self::Nowhere => true,
@@ -80,7 +96,9 @@ impl Reach {
         match self {
             Self::UpTo(end)
             | Self::Between {
-                to: end, open: false, ..
+                to: end,
+                open: false,
+                ..
             } => Some(end),
             Self::Nowhere => Some(0.0),
             Self::Everywhere(_) | Self::Between { open: true, .. } => None,
@@ -94,14 +112,21 @@ impl Reach {
                 "within {percent} % at every amplitude looked at, up to {amplitude} = {}",
                 significant(searched, 4)
             ),
-            Self::UpTo(end) => format!("within {percent} % up to {amplitude} = {}", significant(end, 4)),
+            Self::UpTo(end) => format!(
+                "within {percent} % up to {amplitude} = {}",
+                significant(end, 4)
+            ),
             Self::Between { from, to, open } => {
                 let [from, to] = [from, to].map(|end| significant(end, 4));
                 match open {
                     true => {
-                        format!("within {percent} % from {amplitude} = {from} on, looked at up to {amplitude} = {to}")
+                        format!(
+                            "within {percent} % from {amplitude} = {from} on, looked at up to {amplitude} = {to}"
+                        )
                     }
-                    false => format!("within {percent} % from {amplitude} = {from} to {amplitude} = {to}"),
+                    false => format!(
+                        "within {percent} % from {amplitude} = {from} to {amplitude} = {to}"
+                    ),
                 }
             }
             Self::Nowhere => format!("within {percent} % at no amplitude"),
@@ -109,19 +134,23 @@ impl Reach {
     }
 }
 
-/// The range from rest in which the frequency stays within the tolerance; `None` where it cannot be followed.
+/// The range from rest in which the frequency stays within the tolerance; `None` where it cannot be
+/// followed.
 pub(super) fn reach(
     oscillator: &Oscillator,
     solution: &Solution,
     truth: &TrueBackbone,
     tolerance: f64,
 ) -> Option<Reach> {
-    // Of a motion whose amplitude changes, or is that of a cycle or a response, there is no curve to follow.
-    let fixed = solution.limit_cycle.is_some() || solution.response.is_some() || solution.slow().is_some();
+    // Of a motion whose amplitude changes, or is that of a cycle or a response, there is no curve
+    // to follow.
+    let fixed =
+        solution.limit_cycle.is_some() || solution.response.is_some() || solution.slow().is_some();
     if fixed {
         return None;
     }
-    // Over the many hilltops of a force that waves a balance has many solutions, and following it finds one or another.
+    // Over the many hilltops of a force that waves a balance has many solutions, and following it
+    // finds one or another.
     if Entry::of(solution.method).motion == Motion::Balance && truth.has_waves_of_hilltops() {
         return None;
     }
@@ -130,21 +159,27 @@ pub(super) fn reach(
     let known = Known::default();
     let error = |size: f64| {
         let true_frequency = truth.frequency(size)?;
-        let frequency = formula_frequency_along(oscillator, solution, &truth.numbers_at(size), &known);
+        let frequency =
+            formula_frequency_along(oscillator, solution, &truth.numbers_at(size), &known);
         Some(frequency.map_or(f64::INFINITY, |frequency| frequency / true_frequency - 1.0))
     };
     if solution.method == Method::Exact {
         // It is the truth wherever there is one.
         let good = error(asked.abs())?.abs() <= tolerance;
-        let last = amplitudes.iter().rev().find(|&&size| truth.frequency(size).is_some());
-        return last.filter(|_| good).map(|last| match truth.smallest_amplitude() {
-            inner if inner > 0.0 => Reach::Between {
-                from: inner.copysign(asked),
-                to: last.copysign(asked),
-                open: true,
-            },
-            _ => Reach::Everywhere(last.copysign(asked)),
-        });
+        let last = amplitudes
+            .iter()
+            .rev()
+            .find(|&&size| truth.frequency(size).is_some());
+        return last
+            .filter(|_| good)
+            .map(|last| match truth.smallest_amplitude() {
+                inner if inner > 0.0 => Reach::Between {
+                    from: inner.copysign(asked),
+                    to: last.copysign(asked),
+                    open: true,
+                },
+                _ => Reach::Everywhere(last.copysign(asked)),
+            });
     }
     amplitudes.extend(places_of_law(
         solution,
@@ -189,7 +224,9 @@ pub(super) fn reach(
             points.splice(0..0, smaller);
         }
         // A law that is no good near rest may be so further out.
-        _ if first.1.abs() > tolerance => return about_the_amplitude(&error, &amplitudes, asked, tolerance),
+        _ if first.1.abs() > tolerance => {
+            return about_the_amplitude(&error, &amplitudes, asked, tolerance);
+        }
         _ => {}
     }
     for pair in points.windows(2) {
@@ -200,8 +237,8 @@ pub(super) fn reach(
     Some(Reach::Everywhere(signed(last)))
 }
 
-/// The range about the amplitude asked for in which the frequency stays within the tolerance, or, where it is not within it there, the
-/// outermost.
+/// The range about the amplitude asked for in which the frequency stays within the tolerance, or,
+/// where it is not within it there, the outermost.
 fn about_the_amplitude(
     error: &dyn Fn(f64) -> Option<f64>,
     amplitudes: &[f64],
@@ -214,7 +251,9 @@ fn about_the_amplitude(
         .filter_map(|&size| Some((size, error(size)?)))
         .collect();
     let good = |point: &(f64, f64)| point.1.abs() <= tolerance;
-    let own = points.iter().position(|point| point.0 == asked.abs() && good(point));
+    let own = points
+        .iter()
+        .position(|point| point.0 == asked.abs() && good(point));
     let Some(start) = own.or_else(|| points.iter().rposition(good)) else {
         return (!points.is_empty()).then_some(Reach::Nowhere);
     };
@@ -229,7 +268,12 @@ fn about_the_amplitude(
             false => Some(follow.crossing(near, far)),
         })
     };
-    let outwards = follow(points[start..].windows(2).map(|pair| [pair[0], pair[1]]).collect());
+    let outwards = follow(
+        points[start..]
+            .windows(2)
+            .map(|pair| [pair[0], pair[1]])
+            .collect(),
+    );
     let inwards = follow(
         points[..=start]
             .windows(2)
@@ -259,7 +303,8 @@ impl Follow<'_> {
         /// How many stretches may be halved in all, and how often one.
         const MOST: usize = 160;
         const DEEPEST: usize = 8;
-        /// Of the tolerance: where the error is larger, one look at the middle is not enough, for it may bend to both sides.
+        /// Of the tolerance: where the error is larger, one look at the middle is not enough, for
+        /// it may bend to both sides.
         const CLOSE: f64 = 0.3;
         const LOOKS: usize = 3;
         let mut open = vec![(from, to, 0)];
@@ -296,7 +341,10 @@ impl Follow<'_> {
                 if bend.is_finite() && bend < 0.1 * self.tolerance {
                     return Some(self.crossing(low, middle));
                 }
-            } else if high.1.abs() > self.tolerance && bend.is_finite() && bend < 0.1 * self.tolerance {
+            } else if high.1.abs() > self.tolerance
+                && bend.is_finite()
+                && bend < 0.1 * self.tolerance
+            {
                 return Some(self.crossing(middle, high));
             } else {
                 open.push((middle, high, depth + 1));
@@ -308,7 +356,8 @@ impl Follow<'_> {
 
     /// The crossing between a good point and a bad one, by bisection.
     fn crossing(&self, good: (f64, f64), bad: (f64, f64)) -> f64 {
-        let is_good = |size: f64| (self.error)(size).is_some_and(|error| error.abs() <= self.tolerance);
+        let is_good =
+            |size: f64| (self.error)(size).is_some_and(|error| error.abs() <= self.tolerance);
         let [last, _] = bisect(is_good, good.0, bad.0, Until::Halvings(14));
         last
     }

@@ -1,4 +1,5 @@
-//! Slow equations of amplitude and phase with numbers, solved from their start: the motion that a formula says.
+//! Slow equations of amplitude and phase with numbers, solved from their start: the motion that a
+//! formula says.
 //!
 //! ```text
 //! x = X(a, theta),   x' = V = a' X_a + theta' X_theta,   x'' = a' V_a + theta' V_theta
@@ -35,7 +36,8 @@ pub(super) struct SlowMotion {
     pub(super) equilibrium: f64,
     /// The amplitude at the start.
     start: f64,
-    /// What the phase begins with beside its own start: pi for a negative one, whose size the formula takes.
+    /// What the phase begins with beside its own start: pi for a negative one, whose size the
+    /// formula takes.
     turn: f64,
     /// 2 pi over the rate of the phase there.
     pub(super) period: f64,
@@ -43,7 +45,8 @@ pub(super) struct SlowMotion {
     steady: Vec<f64>,
     /// When the amplitude is zero, by its closed form.
     ends: f64,
-    /// Whether the order is so high that it tells by how much the motion turns beside the phases 0 and pi, for its amplitude drifts.
+    /// Whether the order is so high that it tells by how much the motion turns beside the phases 0
+    /// and pi, for its amplitude drifts.
     drift_counts: bool,
 }
 
@@ -60,7 +63,8 @@ enum Slow {
 
 /// The numbers of a motion released at rest.
 struct Numbers {
-    /// Parameters, definitions and the amplitude at the start, which is the size of one that is turned.
+    /// Parameters, definitions and the amplitude at the start, which is the size of one that is
+    /// turned.
     known: BTreeMap<Symbol, f64>,
     /// The same as exact numbers.
     exact: BTreeMap<Symbol, Expr>,
@@ -84,7 +88,8 @@ impl Numbers {
             .map_err(|name| VerificationError::Missing(vec![name]))?;
         let mut known = numbers.clone();
         known.extend(defined);
-        // Slow equations are written for positive amplitudes; those of a polynomial force hold for any.
+        // Slow equations are written for positive amplitudes; those of a polynomial force hold for
+        // any.
         let released = AmplitudeConvention::Initial.symbol();
         let negative = known.get(&released).is_some_and(|value| *value < 0.0);
         let simple = modulation.release.as_ref().is_none_or(Release::is_at_start);
@@ -123,9 +128,17 @@ impl Numbers {
 
     /// Amplitude and phase in closed form, where there is one that holds.
     fn closed(&self, modulation: &Modulation) -> Option<[CompiledFunction; 2]> {
-        let transient = modulation.transient.as_ref().filter(|_| self.closed_forms_hold)?;
-        let compiled = |expression: &Expr| CompiledFunction::new(&self.put(expression).ok()?, &[Symbol::new("t")]).ok();
-        Some([compiled(&transient.amplitude)?, compiled(transient.phase.as_ref()?)?])
+        let transient = modulation
+            .transient
+            .as_ref()
+            .filter(|_| self.closed_forms_hold)?;
+        let compiled = |expression: &Expr| {
+            CompiledFunction::new(&self.put(expression).ok()?, &[Symbol::new("t")]).ok()
+        };
+        Some([
+            compiled(&transient.amplitude)?,
+            compiled(transient.phase.as_ref()?)?,
+        ])
     }
 }
 
@@ -182,7 +195,8 @@ impl SlowMotion {
             slow,
             place: CompiledFunction::new(&place, &both)?,
             speed: CompiledFunction::new(&speed, &both)?,
-            acceleration: acceleration.and_then(|expression| CompiledFunction::new(&expression, &both).ok()),
+            acceleration: acceleration
+                .and_then(|expression| CompiledFunction::new(&expression, &both).ok()),
             equilibrium,
             start: start[0],
             turn: if numbers.turned { PI } else { 0.0 },
@@ -216,13 +230,21 @@ impl SlowMotion {
     pub(super) fn acceleration(&self, t: f64) -> Option<f64> {
         let acceleration = self.acceleration.as_ref()?;
         let at = self.slow_at(t);
-        Some(if at[0] == 0.0 { 0.0 } else { acceleration.call(&at) })
+        Some(if at[0] == 0.0 {
+            0.0
+        } else {
+            acceleration.call(&at)
+        })
     }
 
     /// Distance from the equilibrium at the amplitude of a time and any phase.
     pub(super) fn at_phase(&self, t: f64, phase: f64) -> f64 {
         let [a, _] = self.slow_at(t);
-        if a == 0.0 { 0.0 } else { self.place.call(&[a, phase]) }
+        if a == 0.0 {
+            0.0
+        } else {
+            self.place.call(&[a, phase])
+        }
     }
 
     /// Where the formula turns on the side of a true turning point.
@@ -284,7 +306,11 @@ impl SlowMotion {
         let start = self.start.abs();
         let settles = |a: f64| {
             let near = |steady: &f64| (a.abs() / steady - 1.0).abs() < 0.01;
-            self.steady.iter().any(near) && !self.steady.iter().any(|steady| (start / steady - 1.0).abs() < 0.01)
+            self.steady.iter().any(near)
+                && !self
+                    .steady
+                    .iter()
+                    .any(|steady| (start / steady - 1.0).abs() < 0.01)
         };
         let steps = 8 * MOST_PERIODS as usize;
         for k in 1..=steps {
@@ -312,8 +338,15 @@ impl SlowMotion {
 }
 
 /// Amplitude and phase by integration of the slow equations.
-fn followed(a: Symbol, rates: &[Expr; 2], start: [f64; 2], duration: f64) -> Result<SlowPath, VerificationError> {
-    let [amplitude, phase] = rates.each_ref().map(|rate| CompiledFunction::new(rate, &[a]));
+fn followed(
+    a: Symbol,
+    rates: &[Expr; 2],
+    start: [f64; 2],
+    duration: f64,
+) -> Result<SlowPath, VerificationError> {
+    let [amplitude, phase] = rates
+        .each_ref()
+        .map(|rate| CompiledFunction::new(rate, &[a]));
     let (amplitude, phase) = (amplitude?, phase?);
     let rates = move |_: f64, values: &[f64; 2], rates: &mut [f64; 2]| {
         // Below zero nothing is left of the motion.
@@ -325,7 +358,7 @@ fn followed(a: Symbol, rates: &[Expr; 2], start: [f64; 2], duration: f64) -> Res
     };
     let options = Integration::with_tolerance(1e-11 * f64::min(1.0, start[0].abs()));
     let begin = Point { t: 0.0, y: start };
-    let path =
-        integrate_first_order(rates, begin, duration, &[], &options).map_err(|_| VerificationError::NoSlowFrequency)?;
+    let path = integrate_first_order(rates, begin, duration, &[], &options)
+        .map_err(|_| VerificationError::NoSlowFrequency)?;
     Ok(Box::new(move |t| path.state_at(t).map(|point| point.y)))
 }

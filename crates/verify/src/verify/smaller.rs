@@ -1,4 +1,5 @@
-//! The same question with all that is small halved again and again, by which the order of an error is measured.
+//! The same question with all that is small halved again and again, by which the order of an error
+//! is measured.
 //!
 //! ```text
 //! small letters            their values halved, among them those of a drive that counts as small, and the detuning
@@ -7,8 +8,9 @@
 //!                          damping, detuning and a small drive by the power of s that the nonlinear terms have, s^4 for x^5 alone
 //! ```
 //!
-//! Numbers in an equation are no letters, so that the answer to the smaller question is derived again. A drive far from resonance is not
-//! small and stays; time in a drive runs by the frequency with half of the detuning.
+//! Numbers in an equation are no letters, so that the answer to the smaller question is derived
+//! again. A drive far from resonance is not small and stays; time in a drive runs by the frequency
+//! with half of the detuning.
 
 use std::collections::BTreeMap;
 
@@ -40,7 +42,8 @@ pub(super) fn smaller(
     halvings: i32,
 ) -> Option<Smaller> {
     let factor = 0.5_f64.powi(halvings);
-    by_letters(oscillator, solution, numbers, factor).or_else(|| by_numbers(oscillator, solution, numbers, factor))
+    by_letters(oscillator, solution, numbers, factor)
+        .or_else(|| by_numbers(oscillator, solution, numbers, factor))
 }
 
 /// Whether the amplitude is what is small.
@@ -48,12 +51,15 @@ pub(super) fn is_small_in_amplitude(solution: &Solution) -> bool {
     solution.small_parameter == solution.amplitude.symbol()
 }
 
-/// The power of the amplitude as which damping, detuning and a small drive count in an expansion in that.
+/// The power of the amplitude as which damping, detuning and a small drive count in an expansion in
+/// that.
 fn power_of_balance(oscillator: &Oscillator, order: u32) -> i32 {
     let order = || {
         let centred = centred(oscillator, None).ok()?.oscillator;
         let mut free = centred.clone();
-        free.force = (&centred.force - &centred.parts().ok()?.forcing).expand().ok()?;
+        free.force = (&centred.force - &centred.parts().ok()?.forcing)
+            .expand()
+            .ok()?;
         i32::try_from(order_of_balance(&free, order)).ok()
     };
     order().unwrap_or(2)
@@ -71,7 +77,10 @@ fn small_drives<'a>(solution: &'a Solution, resonance: &Resonance) -> Vec<&'a Ex
         Note::Driven { small, .. } => Some(small),
         _ => None,
     });
-    small.flatten().filter(|small| **small != detuning).collect()
+    small
+        .flatten()
+        .filter(|small| **small != detuning)
+        .collect()
 }
 
 /// The driving frequency with so much of its detuning left.
@@ -82,7 +91,11 @@ fn retuned(
     factor: f64,
 ) -> Option<[f64; 2]> {
     let mut known = numbers.clone();
-    known.extend(solution.defined_values(&|name| numbers.get(&name).copied()).ok()?);
+    known.extend(
+        solution
+            .defined_values(&|name| numbers.get(&name).copied())
+            .ok()?,
+    );
     let driving = resonance.driving_frequency.evaluate(&known).ok()?;
     let detuning = resonance.detuning.meaning.evaluate(&known).ok()?;
     let less = driving - (1.0 - factor) * detuning / f64::from(resonance.times_driving);
@@ -105,7 +118,9 @@ fn by_letters(
                 .into_iter()
                 .filter(|name| oscillator.parameters.contains(name));
             let letters: Vec<Symbol> = letters.collect();
-            let [letter] = letters.as_slice() else { return None };
+            let [letter] = letters.as_slice() else {
+                return None;
+            };
             // Halved with the letter: a multiple of it.
             let zero = drive.substitute(*letter, &Expr::zero()).ok()?;
             let slope = drive.differentiate(*letter).ok()?;
@@ -140,7 +155,8 @@ fn by_numbers(
     factor: f64,
 ) -> Option<Smaller> {
     let in_amplitude = is_small_in_amplitude(solution);
-    // What balances the nonlinear terms counts as a power of the amplitude, whose square is what is halved.
+    // What balances the nonlinear terms counts as a power of the amplitude, whose square is what is
+    // halved.
     let power = if in_amplitude {
         power_of_balance(oscillator, solution.order)
     } else {
@@ -167,11 +183,17 @@ fn by_numbers(
         let moved = moved.substitute(v, &(&scale * &Expr::from(v)))?;
         Expr::divide(&moved, &scale)?.expand()
     };
-    let at_rest = |part: &Expr| part.substitute(v, &Expr::zero())?.substitute(x, &Expr::zero());
+    let at_rest = |part: &Expr| {
+        part.substitute(v, &Expr::zero())?
+            .substitute(x, &Expr::zero())
+    };
     let restoring = seen(&parts.restoring).ok()?;
     let restoring = &restoring - &at_rest(&restoring).ok()?;
     // A force that has no linear part restores as a whole.
-    let stiffness = restoring.differentiate(x).and_then(|slope| at_rest(&slope)).ok();
+    let stiffness = restoring
+        .differentiate(x)
+        .and_then(|slope| at_rest(&slope))
+        .ok();
     let linear = match stiffness.filter(|stiffness| !stiffness.is_zero()) {
         Some(stiffness) => &stiffness * &Expr::from(x),
         None => restoring.clone(),
@@ -217,7 +239,11 @@ fn by_numbers(
     question.force = question.force.expand().ok()?;
     let answer = solve(&question, &options).ok()?;
     let start = AmplitudeConvention::Initial.symbol();
-    let numbers = numbers.get(&start).map(|value| (start, *value)).into_iter().collect();
+    let numbers = numbers
+        .get(&start)
+        .map(|value| (start, *value))
+        .into_iter()
+        .collect();
     Some(Smaller {
         oscillator: question,
         solution: answer.off_cycle().unwrap_or(answer),
@@ -233,13 +259,23 @@ fn rate_of(term: &Expr) -> Option<f64> {
     let Node::Function(_, arguments) = wave.node() else {
         return None;
     };
-    let rate = arguments[0].differentiate(t).ok()?.evaluate(&BTreeMap::new()).ok()?;
+    let rate = arguments[0]
+        .differentiate(t)
+        .ok()?
+        .evaluate(&BTreeMap::new())
+        .ok()?;
     Some(rate.abs())
 }
 
-/// What is left of a driven term in the smaller question: a force far from resonance counts as the amplitude does, any other as what it
-/// has to balance.
-fn drive_left(term: &Expr, own: [Symbol; 2], resonant: bool, factor: f64, scale: Option<(f64, i32)>) -> Option<f64> {
+/// What is left of a driven term in the smaller question: a force far from resonance counts as the
+/// amplitude does, any other as what it has to balance.
+fn drive_left(
+    term: &Expr,
+    own: [Symbol; 2],
+    resonant: bool,
+    factor: f64,
+    scale: Option<(f64, i32)>,
+) -> Option<f64> {
     let degree = degree(term, own)?;
     let hard = degree == 0 && !resonant;
     let Some((scale, power)) = scale else {
@@ -250,7 +286,8 @@ fn drive_left(term: &Expr, own: [Symbol; 2], resonant: bool, factor: f64, scale:
     Some(scale.powi(wanted - (degree - 1)))
 }
 
-/// The lowest power of the coordinate and the velocity together; `None` where they stand in what has no series.
+/// The lowest power of the coordinate and the velocity together; `None` where they stand in what
+/// has no series.
 fn degree(term: &Expr, own: [Symbol; 2]) -> Option<i32> {
     /// The series of a function begins below.
     const HIGHEST: u32 = 4;

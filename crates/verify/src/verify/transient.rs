@@ -1,4 +1,5 @@
-//! The judge of motions that are not periodic: slow equations of amplitude and phase against the equation as it was typed.
+//! The judge of motions that are not periodic: slow equations of amplitude and phase against the
+//! equation as it was typed.
 //!
 //! ```text
 //! released at rest from x = A, followed until the amplitude has fallen to A/10, grown to 10 A, settled within 1 % of one that
@@ -11,11 +12,11 @@
 //! slope          = log2(max_deviation at delta / at delta/2), delta before all that is small, over times that grow as 1/delta
 //! ```
 //!
-//! Slow equations of order n are off by `delta^(n+1)`, over times of `1/delta` by `delta^n`: that is the slope to expect. It may be
-//! more where a coefficient of the error vanishes.
+//! Slow equations of order n are off by `delta^(n+1)`, over times of `1/delta` by `delta^n`: that
+//! is the slope to expect. It may be more where a coefficient of the error vanishes.
 //!
-//! Reference: J. A. Sanders, F. Verhulst, J. Murdock, *Averaging Methods in Nonlinear Dynamical Systems*, 2nd ed., Springer 2007,
-//! theorems 2.8.1 and 2.9.2.
+//! Reference: J. A. Sanders, F. Verhulst, J. Murdock, *Averaging Methods in Nonlinear Dynamical
+//! Systems*, 2nd ed., Springer 2007, theorems 2.8.1 and 2.9.2.
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -43,16 +44,18 @@ pub struct Followed {
     pub until: f64,
     /// Why no longer, in words.
     pub reason: &'static str,
-    /// The number of times at which the formula and the true motion both went through the equilibrium.
+    /// The number of times at which the formula and the true motion both went through the
+    /// equilibrium.
     pub crossings: usize,
     /// The largest error of the turning points, over the amplitude at the start.
     pub amplitude_error: Option<f64>,
-    /// The measured exponent of that error, over times that grow as what is small becomes less; `None` where rounding hides it, or
-    /// nothing can be made smaller.
+    /// The measured exponent of that error, over times that grow as what is small becomes less;
+    /// `None` where rounding hides it, or nothing can be made smaller.
     pub amplitude_slope: Option<f64>,
     /// When the amplitude is a tenth of that of the start: by the formula.
     pub tenth: Option<f64>,
-    /// By the action, which viscous damping drains at one rate whatever the force; `None` for any other damping.
+    /// By the action, which viscous damping drains at one rate whatever the force; `None` for any
+    /// other damping.
     pub tenth_by_action: Option<f64>,
     /// The same in truth, between turning points on the logarithm.
     pub true_tenth: Option<f64>,
@@ -80,7 +83,12 @@ pub(super) fn judge(
         start,
     } = &judged;
     let crossings = slow.crossings(*until);
-    let own: Vec<f64> = truth.crossings.iter().copied().filter(|t| t <= until).collect();
+    let own: Vec<f64> = truth
+        .crossings
+        .iter()
+        .copied()
+        .filter(|t| t <= until)
+        .collect();
     let count = own.len().min(crossings.len());
     let mean = |times: &[f64]| match times {
         [first, .., last] => Some(PI * (times.len() - 1) as f64 / (last - first)),
@@ -131,7 +139,12 @@ pub(super) fn judge(
             amplitude_error,
             amplitude_slope: slopes.amplitude,
             tenth: slow.turns_at(start.abs() / 10.0, truth.end()),
-            tenth_by_action: falls_to(oscillator, &solution.equilibrium, numbers, [*start, start / 10.0]),
+            tenth_by_action: falls_to(
+                oscillator,
+                &solution.equilibrium,
+                numbers,
+                [*start, start / 10.0],
+            ),
             true_tenth: truth.falls_to(start.abs() / 10.0),
         }),
         verdict: Verdict::of(pass),
@@ -263,9 +276,11 @@ impl Judged {
     /// What the formula leaves of the equation, over the force.
     fn residual(&self, oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
         let known = numbers.iter();
-        let known = known.filter_map(|(name, value)| Some((*name, Expr::number(from_f64(*value)?))));
+        let known =
+            known.filter_map(|(name, value)| Some((*name, Expr::number(from_f64(*value)?))));
         let force = oscillator.force.substitute_all(&known.collect()).ok()?;
-        let force = CompiledFunction::new(&force, &[oscillator.coordinate, oscillator.velocity()]).ok()?;
+        let force =
+            CompiledFunction::new(&force, &[oscillator.coordinate, oscillator.velocity()]).ok()?;
         let count = samples(self.until, self.slow.period);
         let (mut defects, mut forces) = (0.0, 0.0);
         for k in 0..count {
@@ -287,7 +302,12 @@ struct Slopes {
 }
 
 /// What is small is halved again and again, and the motion followed twice as long each time.
-fn slopes(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>, judged: &Judged) -> Slopes {
+fn slopes(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+    judged: &Judged,
+) -> Slopes {
     const HALVINGS: i32 = 4;
     /// How long the first motion is followed: the last one is as long as all before.
     const PERIODS: f64 = 8.0;
@@ -299,9 +319,21 @@ fn slopes(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbo
             return Some(judged.errors(first));
         }
         let smaller = smaller(oscillator, solution, numbers, halving)?;
-        let slow = SlowMotion::new(&smaller.solution, smaller.solution.slow()?, &smaller.numbers).ok()?;
+        let slow = SlowMotion::new(
+            &smaller.solution,
+            smaller.solution.slow()?,
+            &smaller.numbers,
+        )
+        .ok()?;
         let until = first * 2.0_f64.powi(halving);
-        let judged = Judged::followed(&smaller.oscillator, &smaller.numbers, slow, (until, ""), until).ok()?;
+        let judged = Judged::followed(
+            &smaller.oscillator,
+            &smaller.numbers,
+            slow,
+            (until, ""),
+            until,
+        )
+        .ok()?;
         (judged.until >= until).then(|| judged.errors(until))
     };
     let mut errors = vec![];
@@ -313,7 +345,11 @@ fn slopes(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbo
         }
     }
     // What is halved is the square of a small amplitude.
-    let power = if is_small_in_amplitude(solution) { 2.0 } else { 1.0 };
+    let power = if is_small_in_amplitude(solution) {
+        2.0
+    } else {
+        1.0
+    };
     let measured = |of: fn(&Errors) -> Option<f64>| {
         let errors: Vec<f64> = errors
             .iter()

@@ -1,5 +1,6 @@
-//! Where a formula holds: the well of the true motion, the amplitude at which a law loses its frequency, the radius of
-//! convergence of its series, and the range in which its error stays small.
+//! Where a formula holds: the well of the true motion, the amplitude at which a law loses its
+//! frequency, the radius of convergence of its series, and the range in which its error stays
+//! small.
 
 use std::collections::BTreeMap;
 
@@ -39,9 +40,12 @@ pub(super) fn ranges(
     numbers: &BTreeMap<Symbol, f64>,
     tolerance: f64,
 ) -> Vec<Range> {
-    let mut ranges: Vec<Range> = of_equation(oscillator, solution, numbers).into_iter().collect();
+    let mut ranges: Vec<Range> = of_equation(oscillator, solution, numbers)
+        .into_iter()
+        .collect();
     if let Some(cycle) = &solution.limit_cycle {
-        let series = Entry::of(solution.method).sees == Sees::Derivatives && cycle.small_with.is_empty();
+        let series =
+            Entry::of(solution.method).sees == Sees::Derivatives && cycle.small_with.is_empty();
         // Where nothing feeds the motion there is no cycle to expand from.
         let feeds = numbers
             .get(&solution.small_parameter)
@@ -49,8 +53,8 @@ pub(super) fn ranges(
         let found = (series && feeds)
             .then(|| convergence(oscillator, solution, numbers))
             .flatten();
-        ranges.extend(found.map(
-            |range| match range.outside && solution.method == Method::LindstedtPoincare {
+        ranges.extend(found.map(|range| {
+            match range.outside && solution.method == Method::LindstedtPoincare {
                 // A quotient has poles where the series ends.
                 true => Range {
                     text: format!(
@@ -60,8 +64,8 @@ pub(super) fn ranges(
                     ..range
                 },
                 false => range,
-            },
-        ));
+            }
+        }));
         return ranges;
     }
     if solution.amplitude != AmplitudeConvention::Initial {
@@ -75,7 +79,12 @@ pub(super) fn ranges(
     let truth = backbone(oscillator, solution, numbers);
     match truth.smallest_amplitude() {
         inner if inner > 0.0 => ranges.extend(positive_from(oscillator, solution, numbers, &truth)),
-        _ => ranges.extend(vanishing(oscillator, solution, numbers, truth.largest_amplitude())),
+        _ => ranges.extend(vanishing(
+            oscillator,
+            solution,
+            numbers,
+            truth.largest_amplitude(),
+        )),
     }
     if Entry::of(solution.method).sees == Sees::Derivatives {
         ranges.extend(convergence(oscillator, solution, numbers));
@@ -103,18 +112,27 @@ pub(super) fn of_equation(
         || amplitude.abs() < well.smallest_amplitude();
     let text = well.in_words(solution.amplitude.symbol(), oscillator.coordinate);
     // Past the edge of one well the motion may still be periodic, over several.
-    let over_all = beyond && super::true_frequency(oscillator, &meant(oscillator, solution, numbers), numbers).is_ok();
+    let over_all = beyond
+        && super::true_frequency(oscillator, &meant(oscillator, solution, numbers), numbers)
+            .is_ok();
     Some(match over_all {
         true => Range {
             text: format!("{text}; beyond it the motion runs over several wells, and does so here"),
             outside: false,
         },
-        false => Range { text, outside: beyond },
+        false => Range {
+            text,
+            outside: beyond,
+        },
     })
 }
 
 /// How good the integral of a law by quadrature is.
-fn integral_error(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Range> {
+fn integral_error(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Option<Range> {
     let error = error_of_integral(oscillator, solution, numbers)?;
     Some(Range {
         text: format!("the integral of the law is good to {error:.0e}"),
@@ -129,10 +147,16 @@ pub(super) fn backbone<'a>(
     numbers: &'a BTreeMap<Symbol, f64>,
 ) -> TrueBackbone<'a> {
     let well = well_of(oscillator, solution, numbers);
-    TrueBackbone::new(oscillator, &meant(oscillator, solution, numbers), numbers, well)
+    TrueBackbone::new(
+        oscillator,
+        &meant(oscillator, solution, numbers),
+        numbers,
+        well,
+    )
 }
 
-/// Whether the motions that an answer is meant for do not begin at rest, but run over several wells.
+/// Whether the motions that an answer is meant for do not begin at rest, but run over several
+/// wells.
 pub(super) fn is_over_several_wells(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -142,7 +166,11 @@ pub(super) fn is_over_several_wells(
 }
 
 /// The well of the motion that an answer is meant for.
-fn well_of(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Well> {
+fn well_of(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> Option<Well> {
     if solution.amplitude != AmplitudeConvention::Initial || solution.limit_cycle.is_some() {
         return None;
     }
@@ -151,13 +179,21 @@ fn well_of(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symb
         return Well::new(&force_of(oscillator, solution, numbers)?, amplitude);
     }
     let forces = inertia::forces(oscillator)?;
-    let [weighted, force] =
-        forces.map(|force| Force::new(&force, oscillator.coordinate, &solution.equilibrium, numbers, amplitude));
+    let [weighted, force] = forces.map(|force| {
+        Force::new(
+            &force,
+            oscillator.coordinate,
+            &solution.equilibrium,
+            numbers,
+            amplitude,
+        )
+    });
     Well::with_inertia(&weighted?, &force?, amplitude)
 }
 
-/// Why there is no motion to judge by, with the amplitudes at which there is one where the inertia depends on the position: Runge-Kutta
-/// alone does not know them. Where energy is conserved as it stands the error says so already.
+/// Why there is no motion to judge by, with the amplitudes at which there is one where the inertia
+/// depends on the position: Runge-Kutta alone does not know them. Where energy is conserved as it
+/// stands the error says so already.
 pub(super) fn why_no_motion(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -179,7 +215,9 @@ pub(super) fn why_no_motion(
         Some((well, well.on_side(amplitude)?, amplitude))
     });
     VerificationError::Period(match end {
-        Some((_, end, amplitude)) if end.rim.separatrix && (amplitude / end.amplitude - 1.0).abs() <= ON => {
+        Some((_, end, amplitude))
+            if end.rim.separatrix && (amplitude / end.amplitude - 1.0).abs() <= ON =>
+        {
             PeriodError::Separatrix {
                 start: solution.equilibrium.evaluate(numbers).unwrap_or(0.0) + amplitude,
                 place: end.rim.place,
@@ -192,7 +230,8 @@ pub(super) fn why_no_motion(
     })
 }
 
-/// The largest amplitude of motions over several wells, up to four times that asked for, below which the law's omega^2 is not positive.
+/// The largest amplitude of motions over several wells, up to four times that asked for, below
+/// which the law's omega^2 is not positive.
 fn positive_from(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -215,7 +254,9 @@ fn positive_from(
     };
     let place = |k: usize| inner + (outer - inner) * k as f64 / STEPS as f64;
     let values: Vec<f64> = (0..=STEPS).map(|k| squared(place(k))).collect();
-    let last = values.windows(2).rposition(|pair| pair[0] <= 0.0 && pair[1] > 0.0)?;
+    let last = values
+        .windows(2)
+        .rposition(|pair| pair[0] <= 0.0 && pair[1] > 0.0)?;
     let zero = find_root(squared, place(last), place(last + 1)).ok()?;
     let at = significant(zero.copysign(amplitude), 6);
     let law = of_frequency(law_name(solution));
@@ -225,7 +266,8 @@ fn positive_from(
     })
 }
 
-/// The first amplitude, on the side asked for, at which the law's omega^2 reaches zero or has a pole.
+/// The first amplitude, on the side asked for, at which the law's omega^2 reaches zero or has a
+/// pole.
 fn vanishing(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -240,7 +282,8 @@ fn vanishing(
     if solution.method == Method::Exact || solution.law.is_solved_by_numbers() {
         return None;
     }
-    // A law beyond the escape of the true motion is of no use, but where it ends is still its own affair.
+    // A law beyond the escape of the true motion is of no use, but where it ends is still its own
+    // affair.
     let farthest = if limit.is_finite() {
         f64::max(1.5 * limit, amplitude.abs())
     } else {
@@ -253,7 +296,11 @@ fn vanishing(
     };
     let mut places: Vec<f64> = (1..=STEPS)
         .map(|k| farthest * (k as f64 / STEPS as f64).powi(2))
-        .chain(reach::places_of_law(solution, numbers, amplitude.signum() * farthest))
+        .chain(reach::places_of_law(
+            solution,
+            numbers,
+            amplitude.signum() * farthest,
+        ))
         .collect();
     places.sort_by(f64::total_cmp);
     let (mut before, mut value_before) = (1e-9 * amplitude.abs(), squared(1e-9 * amplitude.abs()));
@@ -268,7 +315,8 @@ fn vanishing(
             let Ok(zero) = find_root(squared, before, place) else {
                 return None;
             };
-            // A sign change by way of infinity is a pole: towards it the values grow, towards a zero they shrink.
+            // A sign change by way of infinity is a pole: towards it the values grow, towards a
+            // zero they shrink.
             let size = |distance: f64| squared(zero * (1.0 - distance)).abs();
             let is_pole = size(1e-9) > 10.0 * size(1e-6);
             let at = significant(zero.copysign(amplitude), 6);

@@ -21,7 +21,8 @@ impl Lanes {
     }
 }
 
-/// How eight products at a time are summed. A sum is kept unreduced: that is where the speed comes from.
+/// How eight products at a time are summed. A sum is kept unreduced: that is where the speed comes
+/// from.
 pub trait Arithmetic: Copy + Send + Sync {
     /// The primes lie between half of `2^BITS` and `2^BITS`.
     const BITS: u32;

@@ -1,7 +1,8 @@
 //! Memory for long tables, in large pages where the system has them on request.
 //!
-//! The first touch of a page costs as much as a thousand products, and the columns of a long table lie in a page each: in large pages
-//! both cost next to nothing. Elsewhere, and for little, it is memory like any other.
+//! The first touch of a page costs as much as a thousand products, and the columns of a long table
+//! lie in a page each: in large pages both cost next to nothing. Elsewhere, and for little, it is
+//! memory like any other.
 
 use super::Lanes;
 
@@ -66,7 +67,8 @@ mod large {
             if bytes < LEAST {
                 return None;
             }
-            let mapping = MmapMut::map_anon(bytes.checked_next_multiple_of(PAGE)?.checked_add(PAGE)?).ok()?;
+            let mapping =
+                MmapMut::map_anon(bytes.checked_next_multiple_of(PAGE)?.checked_add(PAGE)?).ok()?;
             // Without large pages it is as good as any other memory.
             let _ = mapping.advise(Advice::HugePage);
             let start = mapping.as_ptr().align_offset(PAGE);
@@ -89,7 +91,12 @@ mod tests {
         for count in [0, 1, 1000, 4096, 40_000, 100_000] {
             let mut memory = Memory::zeroed(count);
             assert_eq!(memory.lanes().len(), count);
-            assert!(memory.lanes().iter().all(|lanes| *lanes == Lanes::default()));
+            assert!(
+                memory
+                    .lanes()
+                    .iter()
+                    .all(|lanes| *lanes == Lanes::default())
+            );
             memory.lanes().fill(Lanes::all(7));
             assert!(memory.lanes().iter().all(|lanes| *lanes == Lanes::all(7)));
         }

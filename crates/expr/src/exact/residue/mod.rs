@@ -1,17 +1,20 @@
 //! Residues modulo primes of one word, and the way back to whole numbers.
 //!
-//! References: P. L. Montgomery, *Modular multiplication without trial division*, Math. Comp. 44 (1985) 519-521; J. von zur
-//! Gathen and J. Gerhard, *Modern Computer Algebra*, Cambridge 2013, chapter 5.
+//! References: P. L. Montgomery, *Modular multiplication without trial division*, Math. Comp. 44
+//! (1985) 519-521; J. von zur Gathen and J. Gerhard, *Modern Computer Algebra*, Cambridge 2013,
+//! chapter 5.
 //!
 //! ```text
 //! a is held as a R mod p,  R = 2^radix        (a R)(b R)/R = (a b) R
 //! x = sum_i t_i M/p_i - q M,   M = p_1 ... p_r,   t_i = x (M/p_i)^-1 mod p_i     (Chinese remainders)
 //! ```
 //!
-//! A long exact computation is done modulo many primes, each by machine words alone, and put together at the end. In come
-//! [`Modulus`] and [`Tables`] of [`Lanes`], eight residues side by side, most often of [eight primes](moduli); an [`Arithmetic`] says how eight
-//! products at a time are summed, by the processor's wide multiply-add where it has one ([`wide`]) and by plain words elsewhere
-//! ([`portable`]), with the same results after the [remainders](remainder) are put together.
+//! A long exact computation is done modulo many primes, each by machine words alone, and put
+//! together at the end. In come [`Modulus`] and [`Tables`] of [`Lanes`], eight residues side by
+//! side, most often of [eight primes](moduli); an [`Arithmetic`] says how eight products at a time
+//! are summed, by the processor's wide multiply-add where it has one ([`wide`]) and by plain words
+//! elsewhere ([`portable`]), with the same results after the [remainders](remainder) are put
+//! together.
 
 pub mod lanes;
 pub mod memory;
@@ -57,8 +60,8 @@ pub fn by_widest<W: Work>(work: W) -> W::Output {
     work.by(portable::Portable)
 }
 
-/// A prime, and what Montgomery's multiplication needs beside it. Residues are below the prime and stand for themselves times
-/// `R = 2^radix`, except where they are called plain.
+/// A prime, and what Montgomery's multiplication needs beside it. Residues are below the prime and
+/// stand for themselves times `R = 2^radix`, except where they are called plain.
 #[derive(Clone, Copy, Debug)]
 pub struct Modulus {
     /// The prime, odd, below `2^(radix - 2)`.
@@ -77,16 +80,19 @@ pub struct Modulus {
 impl Modulus {
     /// A prime with `R = 2^radix`, where the radix is that of an [`Arithmetic`].
     pub fn new(prime: u64, radix: u32) -> Self {
-        // Newton's iteration doubles the digits that are right; an odd number is its own inverse modulo 8.
+        // Newton's iteration doubles the digits that are right; an odd number is its own inverse
+        // modulo 8.
         let inverse = (0..5).fold(prime, |inverse, _| {
             inverse.wrapping_mul(2_u64.wrapping_sub(prime.wrapping_mul(inverse)))
         });
-        // A division of words, where they hold the number, is many times faster than one of double words.
+        // A division of words, where they hold the number, is many times faster than one of double
+        // words.
         let quotient = |value: u128| match u64::try_from(value) {
             Ok(word) => word / prime,
             Err(_) => (value / u128::from(prime)) as u64,
         };
-        let remainder = |value: u128| (value - u128::from(quotient(value)) * u128::from(prime)) as u64;
+        let remainder =
+            |value: u128| (value - u128::from(quotient(value)) * u128::from(prime)) as u64;
         let one = remainder(1 << radix);
         Self {
             prime,
@@ -98,7 +104,8 @@ impl Modulus {
         }
     }
 
-    /// `left right / R`: the product of two residues, or of two digits below `R`, one of them below the prime.
+    /// `left right / R`: the product of two residues, or of two digits below `R`, one of them below
+    /// the prime.
     #[inline(always)]
     pub fn product(&self, left: u64, right: u64) -> u64 {
         let product = u128::from(left) * u128::from(right);
@@ -123,7 +130,11 @@ impl Modulus {
 
     /// The residue of a word.
     pub fn residue(&self, value: u64) -> u64 {
-        let remainder = if value < self.prime { value } else { value % self.prime };
+        let remainder = if value < self.prime {
+            value
+        } else {
+            value % self.prime
+        };
         self.product(remainder, self.square)
     }
 
@@ -211,24 +222,31 @@ pub fn primes_up_to(last: u64) -> Vec<u64> {
     let mut primes: Vec<u64> = Vec::new();
     for number in 2..=last {
         let small = primes.iter().take_while(|&prime| prime * prime <= number);
-        if small.into_iter().all(|prime| !number.is_multiple_of(*prime)) {
+        if small
+            .into_iter()
+            .all(|prime| !number.is_multiple_of(*prime))
+        {
             primes.push(number);
         }
     }
     primes
 }
 
-/// Whether a number below `2^50` is prime: the strong test, which these bases decide below `2^61`, the first four below
-/// `3 215 031 751`.
+/// Whether a number below `2^50` is prime: the strong test, which these bases decide below `2^61`,
+/// the first four below `3 215 031 751`.
 fn is_prime(number: u64) -> bool {
-    /// Y. Jiang and Y. Deng, Math. Comp. 83 (2014) 2915-2924; the first four: Pomerance, Selfridge and Wagstaff, Math. Comp. 35 (1980)
-    /// 1003-1026.
+    /// Y. Jiang and Y. Deng, Math. Comp. 83 (2014) 2915-2924; the first four: Pomerance, Selfridge
+    /// and Wagstaff, Math. Comp. 35 (1980) 1003-1026.
     const BASES: [u64; 9] = [2, 3, 5, 7, 11, 13, 17, 19, 23];
     const FOUR_DECIDE_BELOW: u64 = 3_215_031_751;
     if let Some(divisor) = BASES.iter().find(|&base| number.is_multiple_of(*base)) {
         return number == *divisor;
     }
-    let needed = if number < FOUR_DECIDE_BELOW { 4 } else { BASES.len() };
+    let needed = if number < FOUR_DECIDE_BELOW {
+        4
+    } else {
+        BASES.len()
+    };
     if number < 2 {
         return false;
     }
@@ -250,8 +268,8 @@ fn is_prime(number: u64) -> bool {
     })
 }
 
-/// The primes below `2^bits` that are one more than a multiple of `step`, from the largest down to half of `2^bits`; `bits` is
-/// at most 50.
+/// The primes below `2^bits` that are one more than a multiple of `step`, from the largest down to
+/// half of `2^bits`; `bits` is at most 50.
 pub fn primes_below(bits: u32, step: u64) -> impl Iterator<Item = u64> {
     let (highest, lowest) = ((1 << bits) - 1, 1_u64 << (bits - 1));
     let first = (highest - 1) / step;
@@ -267,7 +285,10 @@ mod tests {
 
     /// By division alone.
     fn is_prime_by_division(number: u64) -> bool {
-        number > 1 && (2..).take_while(|d| d * d <= number).all(|d| !number.is_multiple_of(d))
+        number > 1
+            && (2..)
+                .take_while(|d| d * d <= number)
+                .all(|d| !number.is_multiple_of(d))
     }
 
     #[test]
@@ -276,12 +297,18 @@ mod tests {
             assert_eq!(is_prime(number), is_prime_by_division(number), "{number}");
         }
         // Products of two primes, the first of them a pseudoprime to the bases 2, 3, 5 and 7.
-        for composite in [3_215_031_751, 1_000_003 * 1_000_033, 33_554_393 * 33_554_383] {
+        for composite in [
+            3_215_031_751,
+            1_000_003 * 1_000_033,
+            33_554_393 * 33_554_383,
+        ] {
             assert!(!is_prime(composite), "{composite}");
         }
         let found: Vec<u64> = primes_below(30, 24).take(3).collect();
         assert!(
-            found.iter().all(|p| p % 24 == 1 && is_prime_by_division(*p)),
+            found
+                .iter()
+                .all(|p| p % 24 == 1 && is_prime_by_division(*p)),
             "{found:?}"
         );
         assert_eq!(primes_up_to(30), [2, 3, 5, 7, 11, 13, 17, 19, 23, 29]);

@@ -1,8 +1,9 @@
 //! Residues modulo eight primes side by side, or eight modulo one.
 //!
-//! The same operations as those of a [`Modulus`], eight at a time: a whole computation runs modulo eight primes at once, and no number
-//! ever moves from one place to another. What is here is inlined into functions that are compiled for the processor, in which closures are
-//! not: hence loops.
+//! The same operations as those of a [`Modulus`], eight at a time: a whole computation runs modulo
+//! eight primes at once, and no number ever moves from one place to another. What is here is
+//! inlined into functions that are compiled for the processor, in which closures are not: hence
+//! loops.
 
 use super::{Arithmetic, Lanes, Modulus, WIDTH, prime_factors};
 
@@ -38,7 +39,9 @@ impl Moduli {
     /// Without any.
     pub fn of(moduli: &[Modulus]) -> Self {
         let last = moduli.len() - 1;
-        let lanes = |part: fn(&Modulus) -> u64| Lanes(std::array::from_fn(|lane| part(&moduli[lane.min(last)])));
+        let lanes = |part: fn(&Modulus) -> u64| {
+            Lanes(std::array::from_fn(|lane| part(&moduli[lane.min(last)])))
+        };
         Self {
             prime: lanes(|modulus| modulus.prime),
             one: lanes(|modulus| modulus.one),
@@ -137,7 +140,8 @@ impl<A: Arithmetic> Residues<A> {
         self.power(residues, exponents)
     }
 
-    /// The inverses of all of them with a single power; `None` if one of them is zero modulo some prime.
+    /// The inverses of all of them with a single power; `None` if one of them is zero modulo some
+    /// prime.
     #[inline(always)]
     pub fn invert(&self, residues: &mut [Lanes]) -> Option<()> {
         /// Products that do not wait for each other.
@@ -190,8 +194,8 @@ impl<A: Arithmetic> Residues<A> {
         powers
     }
 
-    /// Residues whose powers run through `order` values before they are one again; `None` where `order` does not divide every
-    /// prime minus one.
+    /// Residues whose powers run through `order` values before they are one again; `None` where
+    /// `order` does not divide every prime minus one.
     #[inline(always)]
     pub fn root_of_unity(&self, order: u64) -> Option<Lanes> {
         /// A generator is among the first few numbers.
@@ -254,7 +258,9 @@ mod tests {
                 residues.invert(&mut inverses).expect("none is zero");
                 inverses
             };
-            let root = residues.root_of_unity(48).expect("48 divides each prime minus one");
+            let root = residues
+                .root_of_unity(48)
+                .expect("48 divides each prime minus one");
             assert!(residues.root_of_unity(1 << 40).is_none());
             let powers = residues.powers(root, 50);
             for lane in 0..WIDTH {
@@ -268,12 +274,18 @@ mod tests {
                         residues.product(*own, inverses[0]).0[lane],
                         modulus.product(value, other)
                     );
-                    assert_eq!(residues.sum(*own, inverses[0]).0[lane], (value + other) % modulus.prime);
+                    assert_eq!(
+                        residues.sum(*own, inverses[0]).0[lane],
+                        (value + other) % modulus.prime
+                    );
                     let difference = residues.difference(*own, inverses[0]);
                     assert_eq!(difference.0[lane], modulus.difference(value, other));
                     assert_eq!(residues.plain(*own).0[lane], modulus.plain(value));
                 }
-                assert_eq!(modulus.power(root.0[lane], 24), modulus.negative(modulus.one));
+                assert_eq!(
+                    modulus.power(root.0[lane], 24),
+                    modulus.negative(modulus.one)
+                );
                 assert_ne!(modulus.power(root.0[lane], 16), modulus.one);
                 assert_eq!(powers[49].0[lane], root.0[lane]);
             }

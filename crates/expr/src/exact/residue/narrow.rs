@@ -1,5 +1,6 @@
-//! Sums of products by the vectors of 256 binary digits that x86-64 processors have with AVX2: 32 by 32 digits in words of 64, as in
-//! the [portable](super::portable) arithmetic, whose primes these are.
+//! Sums of products by the vectors of 256 binary digits that x86-64 processors have with AVX2: 32
+//! by 32 digits in words of 64, as in the [portable](super::portable) arithmetic, whose primes
+//! these are.
 
 use std::arch::x86_64::__m256i as Register;
 
@@ -90,7 +91,10 @@ impl Narrow {
     #[inline(always)]
     fn upper(self, words: Words) -> Words {
         let v = self.0.avx2;
-        [v._mm256_srli_epi64::<32>(words[0]), v._mm256_srli_epi64::<32>(words[1])]
+        [
+            v._mm256_srli_epi64::<32>(words[0]),
+            v._mm256_srli_epi64::<32>(words[1]),
+        ]
     }
 
     /// The lower halves.
@@ -123,8 +127,12 @@ impl Narrow {
     #[inline(always)]
     fn reduce_product(self, product: Register, four: Four) -> Register {
         let v = self.0.avx2;
-        let residue = v._mm256_sub_epi64(v._mm256_srli_epi64::<32>(product), self.taken(product, four));
-        // Below zero both halves are large, and the prime more than the residue above it makes up for that.
+        let residue = v._mm256_sub_epi64(
+            v._mm256_srli_epi64::<32>(product),
+            self.taken(product, four),
+        );
+        // Below zero both halves are large, and the prime more than the residue above it makes up
+        // for that.
         v._mm256_min_epu32(residue, v._mm256_add_epi64(residue, four.prime))
     }
 
@@ -231,7 +239,11 @@ impl Arithmetic for Narrow {
     #[inline(always)]
     fn difference(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes {
         let v = self.0.avx2;
-        let (left, right, prime) = (self.words(left), self.words(right), self.words(&moduli.prime));
+        let (left, right, prime) = (
+            self.words(left),
+            self.words(right),
+            self.words(&moduli.prime),
+        );
         let first = v._mm256_sub_epi64(left[0], right[0]);
         let second = v._mm256_sub_epi64(left[1], right[1]);
         let residues: Words = [

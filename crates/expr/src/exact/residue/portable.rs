@@ -1,5 +1,5 @@
-//! Sums of products on any processor: residues of 30 binary digits, multiplied in words of 64, which compilers turn into the
-//! vector instructions that there are.
+//! Sums of products on any processor: residues of 30 binary digits, multiplied in words of 64,
+//! which compilers turn into the vector instructions that there are.
 
 use pulp::NullaryFnOnce;
 #[cfg(not(target_arch = "x86_64"))]
@@ -45,14 +45,16 @@ impl Arithmetic for Portable {
     #[inline(always)]
     fn add_product(self, mut sum: Sum, left: &Lanes, right: &Lanes) -> Sum {
         for k in 0..WIDTH {
-            sum.recent.0[k] = sum.recent.0[k].wrapping_add(half(left.0[k]).wrapping_mul(half(right.0[k])));
+            sum.recent.0[k] =
+                sum.recent.0[k].wrapping_add(half(left.0[k]).wrapping_mul(half(right.0[k])));
         }
         sum
     }
     #[inline(always)]
     fn add_multiple(self, mut sum: Sum, left: u64, right: &Lanes) -> Sum {
         for k in 0..WIDTH {
-            sum.recent.0[k] = sum.recent.0[k].wrapping_add(half(left).wrapping_mul(half(right.0[k])));
+            sum.recent.0[k] =
+                sum.recent.0[k].wrapping_add(half(left).wrapping_mul(half(right.0[k])));
         }
         sum
     }
@@ -122,7 +124,8 @@ impl Arithmetic for Portable {
     }
     #[inline(always)]
     fn vectorize<F: NullaryFnOnce>(self, function: F) -> F::Output {
-        // On x86-64 the arithmetics with more than the least vector instructions are others, so nothing is chosen here.
+        // On x86-64 the arithmetics with more than the least vector instructions are others, so
+        // nothing is chosen here.
         #[cfg(target_arch = "x86_64")]
         return function.call();
         #[cfg(not(target_arch = "x86_64"))]

@@ -1,8 +1,9 @@
-//! Whole numbers from their residues: the Chinese remainder theorem, for many numbers over the same primes.
+//! Whole numbers from their residues: the Chinese remainder theorem, for many numbers over the same
+//! primes.
 //!
-//! The cofactors `M/p_i` are cut into digits once; a number is then a sum of digits times residues, which costs (primes)^2 word
-//! products. Eight numbers are put together side by side, which runs as fast as the recursion that gave the residues. A number nearer
-//! to zero than half of `M` is meant.
+//! The cofactors `M/p_i` are cut into digits once; a number is then a sum of digits times residues,
+//! which costs (primes)^2 word products. Eight numbers are put together side by side, which runs as
+//! fast as the recursion that gave the residues. A number nearer to zero than half of `M` is meant.
 
 use num_integer::Integer as _;
 use num_traits::{One, Signed, Zero};
@@ -29,7 +30,10 @@ pub struct Remainders<A> {
 impl<A: Arithmetic> Remainders<A> {
     /// For these primes, at most 2^13.
     pub fn new(arithmetic: A, moduli: &[Modulus]) -> Self {
-        let product: Integer = moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
+        let product: Integer = moduli
+            .iter()
+            .map(|modulus| Integer::from(modulus.prime))
+            .product();
         let blocks = (product.bits() / u64::from(A::DIGIT)) as usize / WIDTH + 1;
         let mut cofactors = vec![Lanes::default(); blocks * moduli.len()];
         for (i, modulus) in moduli.iter().enumerate() {
@@ -51,7 +55,10 @@ impl<A: Arithmetic> Remainders<A> {
         Self {
             arithmetic,
             moduli: moduli.to_vec(),
-            reciprocals: moduli.iter().map(|modulus| 1.0 / modulus.prime as f64).collect(),
+            reciprocals: moduli
+                .iter()
+                .map(|modulus| 1.0 / modulus.prime as f64)
+                .collect(),
             product: digits::<A>(&product, blocks * WIDTH),
             cofactors,
             inverses,
@@ -59,15 +66,20 @@ impl<A: Arithmetic> Remainders<A> {
     }
 
     /// What plain residues are multiplied by before they are [lifted](Self::lift), times `factor`.
-    pub fn weights<'a>(&'a self, factor: impl Fn(&Modulus) -> u64 + 'a) -> impl Iterator<Item = u64> + 'a {
+    pub fn weights<'a>(
+        &'a self,
+        factor: impl Fn(&Modulus) -> u64 + 'a,
+    ) -> impl Iterator<Item = u64> + 'a {
         let pairs = self.moduli.iter().zip(&self.inverses);
         pairs.map(move |(modulus, inverse)| modulus.product(factor(modulus), *inverse))
     }
 
-    /// Eight numbers, from their plain residues modulo each prime and the [weights](Self::weights); the residues are used up.
+    /// Eight numbers, from their plain residues modulo each prime and the [weights](Self::weights);
+    /// the residues are used up.
     pub fn lift(&self, residues: &mut [Lanes], weights: &[u64], numbers: &mut Numbers) {
         numbers.digits.resize(self.product.len(), Lanes::default());
-        self.arithmetic.vectorize(Lift(self, residues, weights, numbers));
+        self.arithmetic
+            .vectorize(Lift(self, residues, weights, numbers));
     }
 
     /// One number, from its plain residues.
@@ -79,7 +91,12 @@ impl<A: Arithmetic> Remainders<A> {
     }
 }
 
-struct Lift<'a, A>(&'a Remainders<A>, &'a mut [Lanes], &'a [u64], &'a mut Numbers);
+struct Lift<'a, A>(
+    &'a Remainders<A>,
+    &'a mut [Lanes],
+    &'a [u64],
+    &'a mut Numbers,
+);
 
 impl<A: Arithmetic> NullaryFnOnce for Lift<'_, A> {
     type Output = ();
@@ -92,14 +109,18 @@ impl<A: Arithmetic> NullaryFnOnce for Lift<'_, A> {
         let arithmetic = remainders.arithmetic;
         let count = remainders.moduli.len();
         let mut quotients = [0.0; WIDTH];
-        let primes = weights.iter().zip(&remainders.moduli).zip(&remainders.reciprocals);
+        let primes = weights
+            .iter()
+            .zip(&remainders.moduli)
+            .zip(&remainders.reciprocals);
         for (own, ((weight, modulus), reciprocal)) in residues.iter_mut().zip(primes) {
             *own = arithmetic.product(own, &Lanes::all(*weight), &Moduli::all(modulus));
             for (quotient, residue) in quotients.iter_mut().zip(own.0) {
                 *quotient += small_to_f64(residue) * reciprocal;
             }
         }
-        // Far from the middle between two integers where the number is small beside M, as it is where there are primes enough.
+        // Far from the middle between two integers where the number is small beside M, as it is
+        // where there are primes enough.
         let mut times = Lanes::default();
         for (times, quotient) in times.0.iter_mut().zip(quotients) {
             *times = (quotient + 0.5) as u64;
@@ -107,7 +128,10 @@ impl<A: Arithmetic> NullaryFnOnce for Lift<'_, A> {
         let mask = (1_u64 << A::DIGIT) - 1;
         let mut carries = [0_i64; WIDTH];
         let digits = numbers.digits.chunks_exact_mut(TOGETHER);
-        for (lot, (digits, product)) in digits.zip(remainders.product.chunks_exact(TOGETHER)).enumerate() {
+        for (lot, (digits, product)) in digits
+            .zip(remainders.product.chunks_exact(TOGETHER))
+            .enumerate()
+        {
             let (block, first) = (lot * TOGETHER / WIDTH, lot * TOGETHER % WIDTH);
             let mut sums = [arithmetic.none(); TOGETHER];
             let columns = &remainders.cofactors[block * count..][..count];
@@ -125,9 +149,12 @@ impl<A: Arithmetic> NullaryFnOnce for Lift<'_, A> {
             }
             for ((sum, digit), product) in sums.into_iter().zip(digits).zip(product) {
                 let (low, high) = arithmetic.parts(sum);
-                let taken = arithmetic.parts(arithmetic.add_multiple(arithmetic.none(), *product, &times));
+                let taken =
+                    arithmetic.parts(arithmetic.add_multiple(arithmetic.none(), *product, &times));
                 for (j, carry) in carries.iter_mut().enumerate() {
-                    let value = (low.0[j] as i64).wrapping_sub(taken.0.0[j] as i64).wrapping_add(*carry);
+                    let value = (low.0[j] as i64)
+                        .wrapping_sub(taken.0.0[j] as i64)
+                        .wrapping_add(*carry);
                     digit.0[j] = value as u64 & mask;
                     let above = (high.0[j] as i64).wrapping_sub(taken.1.0[j] as i64);
                     *carry = (value >> A::DIGIT).wrapping_add(above << (A::RADIX - A::DIGIT));
@@ -150,14 +177,18 @@ fn digits<A: Arithmetic>(number: &Integer, count: usize) -> Vec<u64> {
     let words = number.to_words();
     let word = |place: usize| words.get(place).copied().unwrap_or(0);
     let digit = |place: usize| {
-        let (word_at, shift) = (place * A::DIGIT as usize / 64, place * A::DIGIT as usize % 64);
+        let (word_at, shift) = (
+            place * A::DIGIT as usize / 64,
+            place * A::DIGIT as usize % 64,
+        );
         let both = u128::from(word(word_at)) | u128::from(word(word_at + 1)) << 64;
         (both >> shift) as u64 & ((1 << A::DIGIT) - 1)
     };
     (0..count).map(digit).collect()
 }
 
-/// Eight whole numbers as they come out of the remainders: of a negative one the digits of its sum with a power of a digit.
+/// Eight whole numbers as they come out of the remainders: of a negative one the digits of its sum
+/// with a power of a digit.
 #[derive(Clone, Debug, Default)]
 pub struct Numbers {
     digits: Vec<Lanes>,
@@ -165,8 +196,14 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// Their plain residues; `powers` are the residues of the powers of a [digit](Arithmetic::DIGIT), one more than there are digits.
-    pub fn residues<A: Arithmetic>(&self, arithmetic: A, modulus: &Modulus, powers: &[u64]) -> [u64; WIDTH] {
+    /// Their plain residues; `powers` are the residues of the powers of a
+    /// [digit](Arithmetic::DIGIT), one more than there are digits.
+    pub fn residues<A: Arithmetic>(
+        &self,
+        arithmetic: A,
+        modulus: &Modulus,
+        powers: &[u64],
+    ) -> [u64; WIDTH] {
         struct Residues<'a, A>(A, &'a Modulus, &'a [u64], &'a [Lanes]);
         impl<A: Arithmetic> NullaryFnOnce for Residues<'_, A> {
             type Output = Lanes;
@@ -178,7 +215,12 @@ impl Numbers {
         }
         let count = self.digits.len();
         let mut residues = arithmetic
-            .vectorize(Residues(arithmetic, modulus, &powers[..count], &self.digits))
+            .vectorize(Residues(
+                arithmetic,
+                modulus,
+                &powers[..count],
+                &self.digits,
+            ))
             .0;
         let above = modulus.plain(powers[count]);
         for (residue, negative) in residues.iter_mut().zip(self.negative) {
@@ -216,8 +258,9 @@ impl Numbers {
     }
 }
 
-/// The fraction with this residue modulo `modulus`, between its two halves or positive, whose numerator and denominator together have at least 24 binary digits fewer
-/// than the modulus, so that another fraction with the same residue would be a coincidence; Wang's algorithm.
+/// The fraction with this residue modulo `modulus`, between its two halves or positive, whose
+/// numerator and denominator together have at least 24 binary digits fewer than the modulus, so
+/// that another fraction with the same residue would be a coincidence; Wang's algorithm.
 pub fn fraction(residue: &Integer, modulus: &Integer) -> Option<(Integer, Integer)> {
     const ROOM: u64 = 24;
     let bound = modulus.bits() / 2;
@@ -253,14 +296,27 @@ mod tests {
 
         fn by<A: Arithmetic>(self, arithmetic: A) {
             let primes: Vec<u64> = primes_below(A::BITS, 16).take(40).collect();
-            let moduli: Vec<Modulus> = primes.iter().map(|prime| Modulus::new(*prime, A::RADIX)).collect();
+            let moduli: Vec<Modulus> = primes
+                .iter()
+                .map(|prime| Modulus::new(*prime, A::RADIX))
+                .collect();
             let check = Modulus::new(primes[39], A::RADIX);
             let remainders = Remainders::new(arithmetic, &moduli[..39]);
-            for (power, factor) in [(0, 0), (1, 1), (3, -1), (600, 17), (600, -17), (1000, 3), (1000, -1)] {
+            for (power, factor) in [
+                (0, 0),
+                (1, 1),
+                (3, -1),
+                (600, 17),
+                (600, -17),
+                (1000, 3),
+                (1000, -1),
+            ] {
                 let number = Integer::from(3).pow(power / 2) * Integer::from(factor);
                 let weights: Vec<u64> = remainders.weights(|modulus| modulus.one).collect();
                 // Eight numbers beside each other: this one and its multiples.
-                let all: Vec<Integer> = (0..WIDTH as i64).map(|k| &number * Integer::from(3 - 2 * k)).collect();
+                let all: Vec<Integer> = (0..WIDTH as i64)
+                    .map(|k| &number * Integer::from(3 - 2 * k))
+                    .collect();
                 let mut residues = vec![Lanes::default(); 39];
                 for (own, modulus) in residues.iter_mut().zip(&moduli) {
                     for (residue, number) in own.0.iter_mut().zip(&all) {
@@ -293,7 +349,8 @@ mod tests {
         let modulus = Integer::from((1_i64 << 61) - 1);
         // -17/96 modulo the prime: 96 * inverse = 1.
         let inverse = (1..96).find_map(|k| {
-            let (quotient, rest) = (&modulus * Integer::from(k) + Integer::one()).div_rem(&Integer::from(96));
+            let (quotient, rest) =
+                (&modulus * Integer::from(k) + Integer::one()).div_rem(&Integer::from(96));
             rest.is_zero().then_some(quotient)
         });
         let residue = (inverse.expect("a prime") * Integer::from(-17)).mod_floor(&modulus);
@@ -302,7 +359,10 @@ mod tests {
             Some((Integer::from(-17), Integer::from(96)))
         );
         assert_eq!(
-            fraction(&Integer::from(3_000_000_001_i64).pow(2).mod_floor(&modulus), &modulus),
+            fraction(
+                &Integer::from(3_000_000_001_i64).pow(2).mod_floor(&modulus),
+                &modulus
+            ),
             None
         );
     }

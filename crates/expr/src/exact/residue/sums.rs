@@ -1,5 +1,5 @@
-//! The sums of products that a series recursion consists of, eight at a time: each function here is compiled for the processor, or
-//! inlined into one that is.
+//! The sums of products that a series recursion consists of, eight at a time: each function here is
+//! compiled for the processor, or inlined into one that is.
 
 use pulp::NullaryFnOnce;
 
@@ -18,17 +18,23 @@ pub struct Product {
     pub needed: usize,
 }
 
-/// Orders whose sums over all orders before them are formed together: a row of the tables is read once for all of them.
+/// Orders whose sums over all orders before them are formed together: a row of the tables is read
+/// once for all of them.
 pub const TOGETHER: usize = 8;
 
-/// Order `order` of every product, `sum_i left_i right_(order-i)` at each point; a product may be a factor of those after it.
-/// The orders come one after the other, from zero on.
+/// Order `order` of every product, `sum_i left_i right_(order-i)` at each point; a product may be a
+/// factor of those after it. The orders come one after the other, from zero on.
 ///
-/// What is already there of a product at the orders that follow is kept in its own table, which may be one of the latest orders alone:
-/// [`TOGETHER`] of them and those that are asked for later. Cost: a multiplication for each pair of
-/// orders and each point, half of them for a square.
+/// What is already there of a product at the orders that follow is kept in its own table, which may
+/// be one of the latest orders alone: [`TOGETHER`] of them and those that are asked for later.
+/// Cost: a multiplication for each pair of orders and each point, half of them for a square.
 #[inline(always)]
-pub fn convolve<A: Arithmetic>(residues: &Residues<A>, products: &[Product], tables: &mut Tables, order: usize) {
+pub fn convolve<A: Arithmetic>(
+    residues: &Residues<A>,
+    products: &[Product],
+    tables: &mut Tables,
+    order: usize,
+) {
     struct Convolve<'a, 'm, A>(&'a Residues<A>, &'a [Product], &'a mut Tables<'m>, usize);
     impl<A: Arithmetic> NullaryFnOnce for Convolve<'_, '_, A> {
         type Output = ();
@@ -70,7 +76,8 @@ pub fn convolve<A: Arithmetic>(residues: &Residues<A>, products: &[Product], tab
                             true => first,
                             false => pairs(arithmetic, &left[start..], &right[..recent]),
                         };
-                        let before = &tables.row(product.to, point)[tables.place(product.to, order)];
+                        let before =
+                            &tables.row(product.to, point)[tables.place(product.to, order)];
                         let sum = arithmetic.carry(arithmetic.merge(first, last));
                         arithmetic.add_product(sum, &residues.moduli.one, before)
                     };
@@ -85,11 +92,21 @@ pub fn convolve<A: Arithmetic>(residues: &Residues<A>, products: &[Product], tab
         .vectorize(Convolve(residues, products, tables, order));
 }
 
-/// The part of a product at the orders from `start` on in which both factors are of orders before it.
+/// The part of a product at the orders from `start` on in which both factors are of orders before
+/// it.
 #[inline(always)]
-fn prepare<A: Arithmetic>(residues: &Residues<A>, product: &Product, tables: &mut Tables, point: usize, start: usize) {
+fn prepare<A: Arithmetic>(
+    residues: &Residues<A>,
+    product: &Product,
+    tables: &mut Tables,
+    point: usize,
+    start: usize,
+) {
     let arithmetic = residues.arithmetic;
-    let (orders, place) = (tables.row(product.to, point).len(), tables.place(product.to, start));
+    let (orders, place) = (
+        tables.row(product.to, point).len(),
+        tables.place(product.to, start),
+    );
     for first in [start, start + TOGETHER / 2] {
         let left = &tables.row(product.left, point)[..start];
         let right = &tables.row(product.right, point)[..start];
@@ -119,8 +136,8 @@ fn prepare<A: Arithmetic>(residues: &Residues<A>, product: &Product, tables: &mu
     }
 }
 
-/// `sum_i left_i right_(order-i)` for four orders from `first` on, over all `i < end` for which both are below `start`: each entry
-/// that is loaded serves four sums.
+/// `sum_i left_i right_(order-i)` for four orders from `first` on, over all `i < end` for which
+/// both are below `start`: each entry that is loaded serves four sums.
 #[inline(always)]
 fn window<A: Arithmetic>(
     arithmetic: A,
@@ -159,8 +176,8 @@ fn window<A: Arithmetic>(
     *sums = [a, b, c, d];
 }
 
-/// `sum_i left_i right_(n-i)` over so few, twice [those](TOGETHER), that nothing has to be carried: two sums run beside each other, for
-/// each has to wait for itself.
+/// `sum_i left_i right_(n-i)` over so few, twice [those](TOGETHER), that nothing has to be carried:
+/// two sums run beside each other, for each has to wait for itself.
 #[inline(always)]
 fn pairs<A: Arithmetic>(arithmetic: A, left: &[Lanes], right: &[Lanes]) -> A::Sum {
     const { assert!(2 * TOGETHER <= A::RUN) };
@@ -232,7 +249,12 @@ pub struct Part {
 
 /// `out = sum of factor table_order` over a few parts, at every point.
 #[inline(always)]
-pub fn mixture<A: Arithmetic>(residues: &Residues<A>, parts: &[Part], tables: &Tables, out: &mut [Lanes]) {
+pub fn mixture<A: Arithmetic>(
+    residues: &Residues<A>,
+    parts: &[Part],
+    tables: &Tables,
+    out: &mut [Lanes],
+) {
     let arithmetic = residues.arithmetic;
     for (point, out) in out.iter_mut().enumerate() {
         let mut sum = arithmetic.none();
@@ -281,7 +303,12 @@ pub fn subtract<A: Arithmetic>(residues: &Residues<A>, values: &mut [Lanes], oth
 
 /// `sums += factor values`, one by one.
 #[inline(always)]
-pub fn add_multiple<A: Arithmetic>(residues: &Residues<A>, sums: &mut [Lanes], factor: Lanes, values: &[Lanes]) {
+pub fn add_multiple<A: Arithmetic>(
+    residues: &Residues<A>,
+    sums: &mut [Lanes],
+    factor: Lanes,
+    values: &[Lanes],
+) {
     for (sum, value) in sums.iter_mut().zip(values) {
         *sum = residues.sum(*sum, residues.product(factor, *value));
     }

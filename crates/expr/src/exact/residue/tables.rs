@@ -2,8 +2,8 @@
 
 use super::Lanes;
 
-/// Several tables with as many rows each, in one memory, where the rows of a point stand one after the other: what is formed of them
-/// at a point is formed of what lies together.
+/// Several tables with as many rows each, in one memory, where the rows of a point stand one after
+/// the other: what is formed of them at a point is formed of what lies together.
 pub struct Tables<'m> {
     rows: usize,
     /// From a row to the next of the same table.
@@ -41,11 +41,16 @@ impl<'m> Tables<'m> {
         self.rows
     }
 
-    /// Where an order stands in a table: in rows too short for all of them, instead of one before it.
+    /// Where an order stands in a table: in rows too short for all of them, instead of one before
+    /// it.
     #[inline(always)]
     pub fn place(&self, table: usize, order: usize) -> usize {
         let length = self.places[table].1;
-        if order < length { order } else { order % length }
+        if order < length {
+            order
+        } else {
+            order % length
+        }
     }
 
     /// All entries of a row.
@@ -59,14 +64,21 @@ impl<'m> Tables<'m> {
     #[inline(always)]
     pub fn entry(&mut self, table: usize, row: usize, place: usize) -> &mut Lanes {
         let begin = self.places[table].0;
-        &mut self.entries[row.wrapping_mul(self.stride).wrapping_add(begin).wrapping_add(place)]
+        &mut self.entries[row
+            .wrapping_mul(self.stride)
+            .wrapping_add(begin)
+            .wrapping_add(place)]
     }
 
     /// Writes the same place of the first rows.
     #[inline(always)]
     pub fn write(&mut self, table: usize, place: usize, values: &[Lanes]) {
         let begin = self.places[table].0;
-        for (row, value) in self.entries.chunks_exact_mut(self.stride.max(1)).zip(values) {
+        for (row, value) in self
+            .entries
+            .chunks_exact_mut(self.stride.max(1))
+            .zip(values)
+        {
             row[begin + place] = *value;
         }
     }

@@ -1,5 +1,5 @@
-//! Sums of products by the wide multiply-add of x86-64 processors that have it (AVX-512 IFMA): 52 by 52 binary digits, the low
-//! and the high half of the product each added to a word of its own.
+//! Sums of products by the wide multiply-add of x86-64 processors that have it (AVX-512 IFMA): 52
+//! by 52 binary digits, the low and the high half of the product each added to a word of its own.
 
 use std::arch::x86_64::__m512i as Register;
 
@@ -40,7 +40,12 @@ impl Wide {
     }
 
     #[inline(always)]
-    fn add(self, sum: (Register, Register), left: Register, right: Register) -> (Register, Register) {
+    fn add(
+        self,
+        sum: (Register, Register),
+        left: Register,
+        right: Register,
+    ) -> (Register, Register) {
         (
             self.avx512ifma._mm512_madd52lo_epu64(sum.0, left, right),
             self.avx512ifma._mm512_madd52hi_epu64(sum.1, left, right),
@@ -73,12 +78,18 @@ impl Arithmetic for Wide {
     fn carry(self, (low, high): Self::Sum) -> Self::Sum {
         let f = self.avx512f;
         let low_digits = f._mm512_and_si512(low, self.all((1 << 52) - 1));
-        (low_digits, f._mm512_add_epi64(high, f._mm512_srli_epi64::<52>(low)))
+        (
+            low_digits,
+            f._mm512_add_epi64(high, f._mm512_srli_epi64::<52>(low)),
+        )
     }
     #[inline(always)]
     fn merge(self, left: Self::Sum, right: Self::Sum) -> Self::Sum {
         let f = self.avx512f;
-        (f._mm512_add_epi64(left.0, right.0), f._mm512_add_epi64(left.1, right.1))
+        (
+            f._mm512_add_epi64(left.0, right.0),
+            f._mm512_add_epi64(left.1, right.1),
+        )
     }
     #[inline(always)]
     fn join(self, left: Self::Sum, right: Self::Sum) -> Self::Sum {
@@ -94,7 +105,8 @@ impl Arithmetic for Wide {
         let (f, ifma) = (self.avx512f, self.avx512ifma);
         let (low, high) = self.carry(sum);
         let (zero, prime) = (self.all(0), pulp::cast(moduli.prime.0));
-        // The high part, below 2^62, loses a multiple of the prime: what is left is below twice the prime.
+        // The high part, below 2^62, loses a multiple of the prime: what is left is below twice the
+        // prime.
         let upper = f._mm512_srli_epi64::<10>(high);
         let guess = ifma._mm512_madd52hi_epu64(zero, upper, pulp::cast(moduli.quotient.0));
         let multiple = ifma._mm512_madd52lo_epu64(zero, f._mm512_srli_epi64::<35>(guess), prime);
@@ -115,9 +127,10 @@ impl Arithmetic for Wide {
         let multiple = ifma._mm512_madd52lo_epu64(zero, low, pulp::cast(moduli.inverse.0));
         let taken = ifma._mm512_madd52hi_epu64(zero, multiple, prime);
         let residue = f._mm512_sub_epi64(high, taken);
-        Lanes(pulp::cast(
-            f._mm512_min_epu64(residue, f._mm512_add_epi64(residue, prime)),
-        ))
+        Lanes(pulp::cast(f._mm512_min_epu64(
+            residue,
+            f._mm512_add_epi64(residue, prime),
+        )))
     }
     #[inline(always)]
     fn sum(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes {

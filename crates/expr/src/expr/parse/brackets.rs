@@ -1,7 +1,8 @@
-//! The terms of one side of an equation as they were typed, those inside scaled brackets one by one: of
-//! `2*(x'' + x + 0.5*x')` a message quotes `0.5*x'`.
+//! The terms of one side of an equation as they were typed, those inside scaled brackets one by
+//! one: of `2*(x'' + x + 0.5*x')` a message quotes `0.5*x'`.
 //!
-//! A bracket is opened where all else in its term is free of the motion: numbers and parameters. `-mu*(1 - x^2)*x'` is one term.
+//! A bracket is opened where all else in its term is free of the motion: numbers and parameters.
+//! `-mu*(1 - x^2)*x'` is one term.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -12,8 +13,8 @@ use crate::expr::Expr;
 use crate::expr::typed::{Around, TypedTerm};
 use crate::symbol::Symbol;
 
-/// The deepest bracket in a bracket that is opened, and the most terms of one: what is typed by hand has fewer, and reading the
-/// text of a bracket again for each level costs little.
+/// The deepest bracket in a bracket that is opened, and the most terms of one: what is typed by
+/// hand has fewer, and reading the text of a bracket again for each level costs little.
 const DEEPEST: usize = 8;
 const MOST_TERMS: usize = 256;
 
@@ -31,15 +32,20 @@ pub(super) fn typed_terms(
     });
     let mut open: Vec<(TypedTerm, &[Token])> = terms.collect();
     for _ in 0..DEEPEST {
-        let pieces = open
-            .into_iter()
-            .flat_map(|(term, tokens)| opened(text, &term, tokens, coordinate).unwrap_or_else(|| vec![(term, tokens)]));
+        let pieces = open.into_iter().flat_map(|(term, tokens)| {
+            opened(text, &term, tokens, coordinate).unwrap_or_else(|| vec![(term, tokens)])
+        });
         open = pieces.collect();
     }
     open.into_iter().map(|(term, _)| term).collect()
 }
 
-fn typed_term(value: Expr, tokens: &[Token], right: bool, around: Option<Arc<Around>>) -> TypedTerm {
+fn typed_term(
+    value: Expr,
+    tokens: &[Token],
+    right: bool,
+    around: Option<Arc<Around>>,
+) -> TypedTerm {
     let (negative, rest) = unsigned(tokens);
     TypedTerm {
         value,
@@ -50,7 +56,8 @@ fn typed_term(value: Expr, tokens: &[Token], right: bool, around: Option<Arc<Aro
     }
 }
 
-/// The terms inside the one bracket of a term that the rest of it scales; `None` where there is no such bracket.
+/// The terms inside the one bracket of a term that the rest of it scales; `None` where there is no
+/// such bracket.
 fn opened<'a>(
     text: &str,
     term: &TypedTerm,
@@ -74,14 +81,19 @@ fn opened<'a>(
     let [first, inner @ .., last] = bracket else {
         return None;
     };
-    if divides || first.kind != Kind::Open || last.kind != Kind::Close || closes_before_its_end(bracket) {
+    if divides
+        || first.kind != Kind::Open
+        || last.kind != Kind::Close
+        || closes_before_its_end(bracket)
+    {
         return None;
     }
     let whole = span(rest);
     let (before, after) = (&text[whole.start..first.start], &text[last.end..whole.end]);
     let scale = parse_expression(&format!("{before}1{after}")).ok()?;
     let scale = if negative { -scale } else { scale };
-    // What stands around the bracket multiplies it, and so does what stands around the term in its turn.
+    // What stands around the bracket multiplies it, and so does what stands around the term in its
+    // turn.
     let (scale, outer) = match &term.around {
         Some(outer) => (
             &scale * &outer.scale,
@@ -104,7 +116,12 @@ fn opened<'a>(
         // The sign between two terms belongs to the second.
         let tokens = &inner[range.start.saturating_sub(1)..range.end];
         let value = parse_expression(&text[span(tokens)]).ok()?;
-        let term = typed_term(&around.scale * &value, tokens, term.right, Some(around.clone()));
+        let term = typed_term(
+            &around.scale * &value,
+            tokens,
+            term.right,
+            Some(around.clone()),
+        );
         Some((term, tokens))
     });
     pieces.collect()
@@ -115,7 +132,10 @@ fn unsigned(tokens: &[Token]) -> (bool, &[Token]) {
     let signs = tokens
         .iter()
         .take_while(|token| matches!(token.kind, Kind::Plus | Kind::Minus));
-    let minuses = signs.clone().filter(|sign| sign.kind == Kind::Minus).count();
+    let minuses = signs
+        .clone()
+        .filter(|sign| sign.kind == Kind::Minus)
+        .count();
     (minuses % 2 == 1, &tokens[signs.count()..])
 }
 
@@ -123,7 +143,8 @@ fn span(tokens: &[Token]) -> Range<usize> {
     tokens.first().map_or(0, |token| token.start)..tokens.last().map_or(0, |token| token.end)
 }
 
-/// The ranges between the operators outside all brackets; a sign that stands where an operand is expected is none.
+/// The ranges between the operators outside all brackets; a sign that stands where an operand is
+/// expected is none.
 fn split(tokens: &[Token], operator: impl Fn(Kind) -> bool) -> Vec<Range<usize>> {
     let (mut depth, mut start) = (0_usize, 0);
     let mut ranges = Vec::new();
@@ -131,7 +152,11 @@ fn split(tokens: &[Token], operator: impl Fn(Kind) -> bool) -> Vec<Range<usize>>
         match token.kind {
             Kind::Open => depth += 1,
             Kind::Close => depth = depth.saturating_sub(1),
-            kind if depth == 0 && operator(kind) && number > 0 && ends_operand(tokens[number - 1].kind) => {
+            kind if depth == 0
+                && operator(kind)
+                && number > 0
+                && ends_operand(tokens[number - 1].kind) =>
+            {
                 ranges.push(start..number);
                 start = number + 1;
             }

@@ -71,10 +71,22 @@ pub fn excerpt(text: &str, span: &Range<usize>) -> [String; 2] {
         .count()
         .max(1);
     // The place stands in the first third of a window that is cut on both sides.
-    let skipped = if column > WIDTH * 2 / 3 { column - WIDTH / 3 } else { 0 };
-    let shown: String = line.chars().skip(skipped).take(WIDTH).map(visible).collect();
+    let skipped = if column > WIDTH * 2 / 3 {
+        column - WIDTH / 3
+    } else {
+        0
+    };
+    let shown: String = line
+        .chars()
+        .skip(skipped)
+        .take(WIDTH)
+        .map(visible)
+        .collect();
     let cut = line.chars().nth(skipped + WIDTH).is_some();
-    let (before, after) = (if skipped > 0 { "..." } else { "" }, if cut { "..." } else { "" });
+    let (before, after) = (
+        if skipped > 0 { "..." } else { "" },
+        if cut { "..." } else { "" },
+    );
     let indent = before.len() + column - skipped;
     let carets = length.min(WIDTH.saturating_sub(column - skipped).max(1));
     [
@@ -88,6 +100,10 @@ pub(super) fn shortened(text: &str) -> String {
     const LONGEST: usize = 40;
     match text.char_indices().nth(LONGEST) {
         None => text.chars().map(visible).collect(),
-        Some((cut, _)) => text[..cut].chars().map(visible).chain("...".chars()).collect(),
+        Some((cut, _)) => text[..cut]
+            .chars()
+            .map(visible)
+            .chain("...".chars())
+            .collect(),
     }
 }

@@ -86,7 +86,11 @@ impl<'a> Lexer<'a> {
         self.skip_while(|letter| letter.is_ascii_alphanumeric() || letter == '_');
         self.skip_while(|letter| letter == '\'');
         match self.position - start > LONGEST_NAME {
-            true => Err(self.error(start, &format!("a name of more than {LONGEST_NAME} letters"), "")),
+            true => Err(self.error(
+                start,
+                &format!("a name of more than {LONGEST_NAME} letters"),
+                "",
+            )),
             false => Ok(Kind::Name),
         }
     }
@@ -99,9 +103,15 @@ impl<'a> Lexer<'a> {
             self.position += 1;
             self.skip_while(digit);
         }
-        if self.rest().starts_with('.') || self.position - start == 1 && self.text[start..].starts_with('.') {
+        if self.rest().starts_with('.')
+            || self.position - start == 1 && self.text[start..].starts_with('.')
+        {
             self.position += usize::from(self.rest().starts_with('.'));
-            return Err(self.error(start, "this is no number", "a decimal point stands among digits: `0.5`"));
+            return Err(self.error(
+                start,
+                "this is no number",
+                "a decimal point stands among digits: `0.5`",
+            ));
         }
         // An `e` without digits behind it is a name, and the missing product sign is found later.
         if let Some(exponent) = self.rest().strip_prefix(['e', 'E']) {
@@ -131,27 +141,41 @@ impl<'a> Lexer<'a> {
                 return Ok(Kind::Power);
             }
             '*' => return Ok(Kind::Times),
-            '\'' => ("a prime stands directly after its letter".into(), "try `x'`"),
+            '\'' => (
+                "a prime stands directly after its letter".into(),
+                "try `x'`",
+            ),
             '"' => ("a double quote is no pair of primes".into(), "try `x''`"),
             '[' | '{' => (format!("`{letter}` is no parenthesis here"), "try `(`"),
             ']' | '}' => (format!("`{letter}` is no parenthesis here"), "try `)`"),
-            '|' => ("`|` is no sign here".into(), "the absolute value is `abs(x)`"),
+            '|' => (
+                "`|` is no sign here".into(),
+                "the absolute value is `abs(x)`",
+            ),
             '_' => ("a name begins with a letter".into(), ""),
-            '\\' if self.rest().starts_with("ddot") => return Err(self.latex_derivative(start, "x''")),
-            '\\' if self.rest().starts_with("dot") => return Err(self.latex_derivative(start, "x'")),
+            '\\' if self.rest().starts_with("ddot") => {
+                return Err(self.latex_derivative(start, "x''"));
+            }
+            '\\' if self.rest().starts_with("dot") => {
+                return Err(self.latex_derivative(start, "x'"));
+            }
             '\\' => (
                 "LaTeX is written, not read".into(),
                 "functions are `sin(x)`, fractions `a/b`",
             ),
             '\0' => ("a NUL character".into(), ""),
             _ if letter.is_ascii_graphic() => (format!("`{letter}` is no sign here"), ""),
-            _ if letter.is_control() => (format!("a control character, U+{:04X}", u32::from(letter)), ""),
+            _ if letter.is_control() => (
+                format!("a control character, U+{:04X}", u32::from(letter)),
+                "",
+            ),
             _ => {
                 let name = match visible(letter) == letter && !letter.is_whitespace() {
                     true => format!("`{letter}` (U+{:04X})", u32::from(letter)),
                     false => format!("the character U+{:04X}", u32::from(letter)),
                 };
-                // The index behind a letter belongs to its name: omega0 may be used, omega alone may not.
+                // The index behind a letter belongs to its name: omega0 may be used, omega alone
+                // may not.
                 let index = self.rest().starts_with(['0', '_', '\u{2080}']);
                 let help = match letter {
                     'ω' if index => "try `omega0`",
@@ -243,7 +267,11 @@ pub(super) fn visible(letter: char) -> char {
     match letter {
         '\t' | '\r' | '\n' => ' ',
         ' '..='~' => letter,
-        _ if letter.is_alphanumeric() || ascii_spelling(letter).is_some_and(|_| !letter.is_whitespace()) => letter,
+        _ if letter.is_alphanumeric()
+            || ascii_spelling(letter).is_some_and(|_| !letter.is_whitespace()) =>
+        {
+            letter
+        }
         _ => '?',
     }
 }

@@ -10,8 +10,8 @@ use super::lexer::{Kind, Token};
 use crate::expr::Function;
 use crate::symbol::{GREEK, Symbol};
 
-/// Whether a name is a letter, Greek ones by name, with or without an index: `x`, `phi`, `q1`, `x_rel`. What else carries primes is most
-/// often a product without its sign.
+/// Whether a name is a letter, Greek ones by name, with or without an index: `x`, `phi`, `q1`,
+/// `x_rel`. What else carries primes is most often a product without its sign.
 fn is_letter(name: &str) -> bool {
     let stem = match name.split_once('_') {
         Some((stem, _)) => stem,
@@ -27,7 +27,11 @@ impl Parser<'_> {
         for token in self.tokens.iter().filter(|token| token.kind == Kind::Name) {
             let name = &self.text[token.span()];
             let bare = name.trim_end_matches('\'');
-            if bare.len() == name.len() || Function::from_name(bare).is_some() || bare == "t" || bare == "pi" {
+            if bare.len() == name.len()
+                || Function::from_name(bare).is_some()
+                || bare == "t"
+                || bare == "pi"
+            {
                 continue;
             }
             if !is_letter(bare) {
@@ -37,7 +41,11 @@ impl Parser<'_> {
             match primed {
                 Some((_, first)) if first != bare => {
                     let message = format!("derivatives of both `{first}` and `{bare}`");
-                    return Err(self.error(token.span(), &message, "an equation of motion has one coordinate"));
+                    return Err(self.error(
+                        token.span(),
+                        &message,
+                        "an equation of motion has one coordinate",
+                    ));
                 }
                 _ => primed = Some((*token, bare)),
             }
@@ -71,7 +79,18 @@ impl Parser<'_> {
             let name = text(token);
             let rest = &self.tokens[index..];
             let called = rest.get(1).is_some_and(|next| next.kind == Kind::Open);
-            if called && ["diff", "D", "Diff", "Derivative", "derivative", "dot", "ddot"].contains(&name) {
+            if called
+                && [
+                    "diff",
+                    "D",
+                    "Diff",
+                    "Derivative",
+                    "derivative",
+                    "dot",
+                    "ddot",
+                ]
+                .contains(&name)
+            {
                 let end = matching_close(rest, 1).map_or(token.end, |place| rest[place].end);
                 return Err(self.derivative_error(token.start..end, "x", None));
             }
@@ -98,9 +117,14 @@ impl Parser<'_> {
                     Kind::Name,
                     ..,
                 ] if name == "d" && is_time(5) => (5, Some(text(&rest[3])), 2),
-                [Kind::Name, Kind::Power, Kind::Number, Kind::Divide, Kind::Name, ..] if name == "d" && is_time(4) => {
-                    (4, Some(""), 2)
-                }
+                [
+                    Kind::Name,
+                    Kind::Power,
+                    Kind::Number,
+                    Kind::Divide,
+                    Kind::Name,
+                    ..,
+                ] if name == "d" && is_time(4) => (4, Some(""), 2),
                 _ => continue,
             };
             let Some(letter) = letter
@@ -110,7 +134,8 @@ impl Parser<'_> {
                 continue;
             };
             let mut end = quotient;
-            if kinds.get(end + 1) == Some(&Kind::Power) && kinds.get(end + 2) == Some(&Kind::Number) {
+            if kinds.get(end + 1) == Some(&Kind::Power) && kinds.get(end + 2) == Some(&Kind::Number)
+            {
                 end += 2;
             }
             let letter = if letter.is_empty() { "x" } else { letter };
@@ -119,8 +144,16 @@ impl Parser<'_> {
         Ok(())
     }
 
-    fn derivative_error(&self, span: Range<usize>, letter: &str, order: Option<usize>) -> ParseError {
-        let message = format!("{}: derivatives are written with primes", self.quoted(span.clone()));
+    fn derivative_error(
+        &self,
+        span: Range<usize>,
+        letter: &str,
+        order: Option<usize>,
+    ) -> ParseError {
+        let message = format!(
+            "{}: derivatives are written with primes",
+            self.quoted(span.clone())
+        );
         let help = match order {
             Some(order) => format!("try `{letter}{}`", "'".repeat(order)),
             None => "try `x'` for the velocity, `x''` for the acceleration".into(),
@@ -142,7 +175,12 @@ impl Parser<'_> {
             _ => self.next - 1,
         };
         let mut right = self.next;
-        if self.peek() == Kind::Name && self.tokens.get(right + 1).is_some_and(|next| next.kind == Kind::Open) {
+        if self.peek() == Kind::Name
+            && self
+                .tokens
+                .get(right + 1)
+                .is_some_and(|next| next.kind == Kind::Open)
+        {
             right += 1;
         }
         if self.tokens[right].kind == Kind::Open {
@@ -152,7 +190,10 @@ impl Parser<'_> {
             self.tokens[left].start..previous.end,
             self.token().start..self.tokens[right].end,
         );
-        let message = format!("{}: a product needs its sign", self.quoted(left.start..right.end));
+        let message = format!(
+            "{}: a product needs its sign",
+            self.quoted(left.start..right.end)
+        );
         let help = format!(
             "try `{}*{}`",
             shortened(&self.text[left.clone()]),
@@ -182,24 +223,44 @@ impl Parser<'_> {
             let message = format!("there is no function `{name}`");
             return self.error(token.span(), &message, &format!("did you mean `{known}`?"));
         }
-        let argument = matching_close(&self.tokens, self.next).map_or(token.end, |place| self.tokens[place].end);
+        let argument = matching_close(&self.tokens, self.next)
+            .map_or(token.end, |place| self.tokens[place].end);
         let product = format!("{name}*{}", shortened(&self.text[token.end..argument]));
         if name.trim_end_matches('\'').len() == 1 || name == "pi" {
-            let message = format!("{}: a product needs its sign", self.quoted(token.start..argument));
+            let message = format!(
+                "{}: a product needs its sign",
+                self.quoted(token.start..argument)
+            );
             return self.error(token.start..argument, &message, &format!("try `{product}`"));
         }
-        let names: Vec<&str> = Function::all().map(Function::name).chain(["sqrt"]).collect();
-        let help = format!("the functions are {}; a product is `{product}`", names.join(" "));
-        self.error(token.span(), &format!("there is no function `{name}`"), &help)
+        let names: Vec<&str> = Function::all()
+            .map(Function::name)
+            .chain(["sqrt"])
+            .collect();
+        let help = format!(
+            "the functions are {}; a product is `{product}`",
+            names.join(" ")
+        );
+        self.error(
+            token.span(),
+            &format!("there is no function `{name}`"),
+            &help,
+        )
     }
 
     pub(super) fn missing_operand(&self) -> ParseError {
         let token = self.token();
-        let previous = self.next.checked_sub(1).and_then(|place| self.tokens.get(place));
+        let previous = self
+            .next
+            .checked_sub(1)
+            .and_then(|place| self.tokens.get(place));
         match (previous, token.kind) {
             (None, Kind::Close) => self.unexpected(),
             (Some(previous), _) => {
-                let message = format!("something is missing after {}", self.quoted(previous.span()));
+                let message = format!(
+                    "something is missing after {}",
+                    self.quoted(previous.span())
+                );
                 self.error(previous.span(), &message, "")
             }
             (None, _) => {

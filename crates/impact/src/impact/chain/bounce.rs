@@ -1,7 +1,8 @@
-//! The contact as a map: from the speed of touch to that of release, the depth and the time it takes.
+//! The contact as a map: from the speed of touch to that of release, the depth and the time it
+//! takes.
 //!
-//! The law of Hunt and Crossley, (gamma + mu d') d^(3/2), with the force of the swing at the barrier held constant, g = sin(x_c)
-//! against the motion inwards:
+//! The law of Hunt and Crossley, (gamma + mu d') d^(3/2), with the force of the swing at the
+//! barrier held constant, g = sin(x_c) against the motion inwards:
 //!
 //! ```text
 //! G(-lambda e v) = G(lambda v),  G(z) = z - ln(1 + z),  lambda = mu/gamma     the restitution e, whatever gamma
@@ -10,10 +11,11 @@
 //! tau_0 = 2 int dy/sqrt(1 - y^(5/2)),  tau_1 = dtau/dp at 0,  tau_0 + tau_1 + tau_2 = 4
 //! ```
 //!
-//! The last is exact at both ends and within 1.3 % between them, where the contact is a graze. There the damping of the contact counts for
-//! less: lambda v in the first line is taken in proportion to its work along the undamped contact, (1 - p) i(p)/i(0) with i(p) from
-//! int y^(3/2) sqrt(1 - p y - (1 - p) y^(5/2)) dy, a straight line between its ends. What viscous damping and dry friction take while in
-//! contact is their work along the undamped contact too.
+//! The last is exact at both ends and within 1.3 % between them, where the contact is a graze.
+//! There the damping of the contact counts for less: lambda v in the first line is taken in
+//! proportion to its work along the undamped contact, (1 - p) i(p)/i(0) with i(p) from int y^(3/2)
+//! sqrt(1 - p y - (1 - p) y^(5/2)) dy, a straight line between its ends. What viscous damping and
+//! dry friction take while in contact is their work along the undamped contact too.
 //!
 //! (K. H. Hunt and F. R. E. Crossley, *J. Appl. Mech.* 42 (1975) 440; see [`hunt_crossley`].)
 
@@ -31,9 +33,11 @@ use crate::impact::model::{Model, Side};
 struct Numbers {
     /// tau_0, tau_1, tau_2.
     duration: [f64; 3],
-    /// int_0^1 sqrt(1 - y^(5/2)) dy: the area of half a contact in the phase plane in units of v D, p = 0.
+    /// int_0^1 sqrt(1 - y^(5/2)) dy: the area of half a contact in the phase plane in units of v D,
+    /// p = 0.
     area: f64,
-    /// int_0^1 y^(3/2) sqrt(1 - y^(5/2)) dy: the work of its damping in units of mu v D^(5/2), p = 0.
+    /// int_0^1 y^(3/2) sqrt(1 - y^(5/2)) dy: the work of its damping in units of mu v D^(5/2), p
+    /// = 0.
     loss: f64,
 }
 
@@ -58,7 +62,8 @@ static NUMBERS: LazyLock<Numbers> = LazyLock::new(|| {
     }
 });
 
-/// The share of the force of the swing in holding the pendulum against the barrier beyond which a contact is no bounce: there it leans.
+/// The share of the force of the swing in holding the pendulum against the barrier beyond which a
+/// contact is no bounce: there it leans.
 const LEANS: f64 = -0.3;
 
 /// The greatest depth, rad, at which the force of the swing may count as constant.
@@ -110,8 +115,8 @@ impl Barrier {
         })
     }
 
-    /// The contact that begins with this speed, positive; nothing where the pendulum leans on the barrier rather
-    /// than leaves it, or goes deep.
+    /// The contact that begins with this speed, positive; nothing where the pendulum leans on the
+    /// barrier rather than leaves it, or goes deep.
     pub fn bounce(&self, speed: f64) -> Option<Bounce> {
         let product = self.damping * speed;
         let excess = hunt_crossley::excess(product);
@@ -127,10 +132,14 @@ impl Barrier {
             loss,
         } = &*NUMBERS;
         // The less the barrier takes of the work, the less is lost in it.
-        let loss = hunt_crossley::loss(product * (1.0 - share) * (1.0 + share * (LOSS_OF_A_FALL / loss - 1.0)));
-        let duration = depth / (speed * (1.0 + excess).sqrt()) * (zeroth + share * (first + share * second));
+        let loss = hunt_crossley::loss(
+            product * (1.0 - share) * (1.0 + share * (LOSS_OF_A_FALL / loss - 1.0)),
+        );
+        let duration =
+            depth / (speed * (1.0 + excess).sqrt()) * (zeroth + share * (first + share * second));
         let area = area + share * (AREA_OF_A_FALL - area);
-        let taken = (2.0 - loss) * self.zeta * 2.0 * area * speed * depth + 2.0 * self.alpha * depth;
+        let taken =
+            (2.0 - loss) * self.zeta * 2.0 * area * speed * depth + 2.0 * self.alpha * depth;
         let released = (1.0 - loss) * speed;
         Some(Bounce {
             depth,
@@ -141,7 +150,8 @@ impl Barrier {
 
     /// The depth at which the barrier and the force of the swing have done this work.
     fn depth(&self, work: f64) -> f64 {
-        // Without the force of the swing; with it Newton's steps come down on the root, which is one of a convex function.
+        // Without the force of the swing; with it Newton's steps come down on the root, which is
+        // one of a convex function.
         let mut depth = self.softness * (2.5 * work).powf(0.4);
         if self.push == 0.0 {
             return depth;

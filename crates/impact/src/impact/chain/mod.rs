@@ -1,7 +1,9 @@
-//! The motion of equation (7) without integrating: swing, contact, swing, each in closed form, until it rests.
+//! The motion of equation (7) without integrating: swing, contact, swing, each in closed form,
+//! until it rests.
 //!
-//! Reference: N. N. Bogoliubov and Y. A. Mitropolsky, *Asymptotic Methods in the Theory of Non-linear Oscillations*, 1961, chapter 1, for
-//! the slowly decaying amplitude; `swing` and `bounce` beside this file for the two kinds of phase.
+//! Reference: N. N. Bogoliubov and Y. A. Mitropolsky, *Asymptotic Methods in the Theory of
+//! Non-linear Oscillations*, 1961, chapter 1, for the slowly decaying amplitude; `swing` and
+//! `bounce` beside this file for the two kinds of phase.
 //!
 //! ```text
 //! S(E) = 2 int x' dx over a stretch of the undamped swing,  T(E) = dS/dE the time of it
@@ -11,11 +13,13 @@
 //! E_after  = E - alpha l - (S/T)(1 - exp(-2 zeta T))      that of the turning point, or of its middle
 //! ```
 //!
-//! Before and after a reference energy the stretches mirror each other. Damping of the opposite sign runs the motion backwards, so errors
-//! of even order cancel: one swing errs by the third power of zeta T.
+//! Before and after a reference energy the stretches mirror each other. Damping of the opposite
+//! sign runs the motion backwards, so errors of even order cancel: one swing errs by the third
+//! power of zeta T.
 //!
-//! In: a model, a start, settings. Out: a [`Simulation`] like any other, whose pieces are [`ClosedForm`]s. What has none is integrated,
-//! and said: from there on, where the pendulum comes to lean on a barrier, goes deep into a soft one, or sticks on its way.
+//! In: a model, a start, settings. Out: a [`Simulation`] like any other, whose pieces are
+//! [`ClosedForm`]s. What has none is integrated, and said: from there on, where the pendulum comes
+//! to lean on a barrier, goes deep into a soft one, or sticks on its way.
 
 mod bounce;
 mod swing;
@@ -24,8 +28,8 @@ use thiserror::Error;
 
 use super::model::{Friction, Model, Side, Start};
 use super::simulation::{
-    ClosedForm, Contact, Integrator, Path, REST_FRACTION, Regime, Settings, Simulation, Stop, Turn, first_swing,
-    has_rested,
+    ClosedForm, Contact, Integrator, Path, REST_FRACTION, Regime, Settings, Simulation, Stop, Turn,
+    first_swing, has_rested,
 };
 use super::taylor;
 use crate::decimal::decimal;
@@ -40,7 +44,9 @@ pub enum ChainError {
     #[error("the chain has no moving pivot: beta = {0} needs the simulation, leave out --chain")]
     Driven(f64),
     /// The arctangent law.
-    #[error("the chain takes dry friction by Coulomb's law: write friction = \"exact\", or leave out --chain")]
+    #[error(
+        "the chain takes dry friction by Coulomb's law: write friction = \"exact\", or leave out --chain"
+    )]
     Arctangent,
     /// Nothing that swings.
     #[error(
@@ -68,10 +74,12 @@ pub const MOST_DAMPING: f64 = 0.5;
 
 /// The motion from this start by closed forms.
 ///
-/// The accuracy of the settings counts only where a part has to be integrated. Cost: a few elliptic integrals a swing.
+/// The accuracy of the settings counts only where a part has to be integrated. Cost: a few elliptic
+/// integrals a swing.
 ///
 /// # Errors
-/// [`ChainError`]: a pivot that moves, friction by the arctangent, a pendulum that turns over, heavy damping, a start in a barrier.
+/// [`ChainError`]: a pivot that moves, friction by the arctangent, a pendulum that turns over,
+/// heavy damping, a start in a barrier.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -135,7 +143,8 @@ pub fn chain(model: &Model, start: Start, settings: &Settings) -> Result<Simulat
 /// Where the next stretch begins.
 #[derive(Debug, Clone, Copy)]
 enum Place {
-    /// At rest on this side at this spot; the swing and how far it reaches to the barrier ahead, where they are known.
+    /// At rest on this side at this spot; the swing and how far it reaches to the barrier ahead,
+    /// where they are known.
     Turn(Side, Spot, Option<(Swing, Stretch)>),
     /// At this spot, counted towards this side, with this energy, on the way there.
     Leaving(Side, Spot, f64),
@@ -147,7 +156,8 @@ struct Leg {
     time: f64,
     area: f64,
     length: f64,
-    /// How much later or earlier damping lets the motion arrive, for the same phase, to the first order.
+    /// How much later or earlier damping lets the motion arrive, for the same phase, to the first
+    /// order.
     lag: f64,
     /// The part of that which is dry friction's.
     rubbed: f64,
@@ -169,14 +179,16 @@ impl Leg {
     }
 }
 
-/// Which energies are alike from one swing to the next: of those that leave a barrier, and of free ones.
+/// Which energies are alike from one swing to the next: of those that leave a barrier, and of free
+/// ones.
 #[derive(Debug, Clone, Copy)]
 enum Kind {
     FromPlace,
     FromTurn,
 }
 
-/// The reference energy of the last stretch of a kind in parts of that before it, and by how much that changed: the next one is near.
+/// The reference energy of the last stretch of a kind in parts of that before it, and by how much
+/// that changed: the next one is near.
 #[derive(Debug, Clone, Copy)]
 struct Remembered {
     ratio: f64,
@@ -215,7 +227,11 @@ impl<'a> Chain<'a> {
             let side = if x > 0.0 { Side::Right } else { Side::Left };
             Place::Turn(side, Spot::at(x.abs()), None)
         } else {
-            let to = if velocity > 0.0 { Side::Right } else { Side::Left };
+            let to = if velocity > 0.0 {
+                Side::Right
+            } else {
+                Side::Left
+            };
             let spot = Spot::at(to.sign() * x);
             let touched = self.barrier(to).filter(|barrier| barrier.spot == spot);
             let place = Place::Leaving(to, spot, energy);
@@ -269,11 +285,18 @@ impl<'a> Chain<'a> {
 
     /// E - E_after of a leg.
     fn below(&self, leg: &Leg) -> f64 {
-        self.model.alpha * leg.length - leg.area / leg.time * (-2.0 * self.model.zeta * (leg.time + leg.lag)).exp_m1()
+        self.model.alpha * leg.length
+            - leg.area / leg.time * (-2.0 * self.model.zeta * (leg.time + leg.lag)).exp_m1()
     }
 
-    /// The swing from whose reference energy this leg, run backwards, leads to this energy; nothing where there is none.
-    fn reference(&mut self, energy: f64, kind: Kind, leg: impl Fn(&Swing) -> Leg) -> Option<(Swing, Leg)> {
+    /// The swing from whose reference energy this leg, run backwards, leads to this energy; nothing
+    /// where there is none.
+    fn reference(
+        &mut self,
+        energy: f64,
+        kind: Kind,
+        leg: impl Fn(&Swing) -> Leg,
+    ) -> Option<(Swing, Leg)> {
         if self.model.zeta == 0.0 && self.model.alpha == 0.0 {
             let swing = Swing::new(energy);
             return Some((swing, leg(&swing))).filter(|(_, leg)| leg.time > 0.0);
@@ -294,14 +317,19 @@ impl<'a> Chain<'a> {
                 return None;
             }
             if error.abs() <= NEAR * energy {
-                // The areas grow with the energy as the times; what is left out is of the order of the square.
+                // The areas grow with the energy as the times; what is left out is of the order of
+                // the square.
                 swing.energy = reference;
                 swing.quarter.area -= swing.quarter.time * step;
                 leg.area -= leg.time * step;
                 let ratio = reference / energy;
                 self.remembered[kind as usize] = Remembered {
                     ratio,
-                    change: if last.guessed { 0.0 } else { ratio - last.ratio },
+                    change: if last.guessed {
+                        0.0
+                    } else {
+                        ratio - last.ratio
+                    },
                     guessed: false,
                 };
                 return Some((swing, leg));
@@ -310,17 +338,21 @@ impl<'a> Chain<'a> {
         None
     }
 
-    /// How much later than at the energy of the swing, where its phase is this one, the spot is passed with another energy.
+    /// How much later than at the energy of the swing, where its phase is this one, the spot is
+    /// passed with another energy.
     fn later(swing: &Swing, (sine, cosine): (f64, f64), spot: &Spot, energy: f64) -> f64 {
         let (own_sine, own_cosine) = spot.phase(energy);
-        let change = (own_sine * cosine - own_cosine * sine).clamp(-1.0, 1.0).asin();
+        let change = (own_sine * cosine - own_cosine * sine)
+            .clamp(-1.0, 1.0)
+            .asin();
         change / (1.0 - 0.5 * swing.energy * sine * sine).sqrt()
     }
 
-    /// How much dry friction delays the passage of a spot with this energy on the way from a turning point (direction 1), or hastens the
-    /// way from there to one (-1), beside the free swing of this energy. Friction moves the middle of a linear swing of amplitude a by
-    /// alpha against the motion, so with x = a sin phi there and the speed a cos phi it is arctan((x + alpha)/x') - arctan(x/x'); of the
-    /// pendulum 1/a is [`slowness`].
+    /// How much dry friction delays the passage of a spot with this energy on the way from a
+    /// turning point (direction 1), or hastens the way from there to one (-1), beside the free
+    /// swing of this energy. Friction moves the middle of a linear swing of amplitude a by alpha
+    /// against the motion, so with x = a sin phi there and the speed a cos phi it is arctan((x +
+    /// alpha)/x') - arctan(x/x'); of the pendulum 1/a is [`slowness`].
     fn rub_lag(&self, spot: &Spot, energy: f64, direction: f64) -> f64 {
         if self.model.alpha == 0.0 {
             return 0.0;
@@ -331,7 +363,12 @@ impl<'a> Chain<'a> {
     }
 
     /// From a turning point to the barrier ahead, or to the next turning point.
-    fn after_turn(&mut self, side: Side, turn: Spot, known: Option<(Swing, Stretch)>) -> Option<Place> {
+    fn after_turn(
+        &mut self,
+        side: Side,
+        turn: Spot,
+        known: Option<(Swing, Stretch)>,
+    ) -> Option<Place> {
         let (to, energy) = (side.opposite(), turn.energy);
         if let Some(ahead) = self.barrier(to)
             && (ahead.spot.x < 0.0 || energy > ahead.spot.energy)
@@ -358,18 +395,21 @@ impl<'a> Chain<'a> {
 
     /// From one turning point to the next, or the next two, where no barrier is in reach.
     fn free(&mut self, side: Side, from: Spot) -> Option<Place> {
-        let out_of_reach = |barrier: &Barrier| barrier.spot.x > 0.0 && barrier.spot.energy >= from.energy;
-        let turns = match self.model.alpha == 0.0 && self.barriers.iter().flatten().all(out_of_reach) {
-            true => self.undulate(side, from),
-            false => self.rub(side, from),
-        };
+        let out_of_reach =
+            |barrier: &Barrier| barrier.spot.x > 0.0 && barrier.spot.energy >= from.energy;
+        let turns =
+            match self.model.alpha == 0.0 && self.barriers.iter().flatten().all(out_of_reach) {
+                true => self.undulate(side, from),
+                false => self.rub(side, from),
+            };
         turns.or_else(|| match self.stop {
             Some(_) => None,
             None => self.integrate(),
         })
     }
 
-    /// Two turning points under viscous damping, about the energy of the first; nothing where there is none.
+    /// Two turning points under viscous damping, about the energy of the first; nothing where there
+    /// is none.
     fn undulate(&mut self, side: Side, from: Spot) -> Option<Place> {
         let half = |swing: &Swing| Leg::free(2.0 * swing.quarter.time, 2.0 * swing.quarter.area);
         let (swing, leg) = self.reference(from.energy, Kind::FromTurn, half)?;
@@ -378,13 +418,22 @@ impl<'a> Chain<'a> {
             return None;
         }
         let [first, second] = [swing.energy, energy].map(Spot::turn);
-        // The mean energy on the way there is greater, on the way back less: dK/dE = area/(8 m (1 - m)) with E = 2 m.
+        // The mean energy on the way there is greater, on the way back less: dK/dE = area/(8 m (1 -
+        // m)) with E = 2 m.
         let stretched = swing.quarter.area / (swing.energy * (2.0 - swing.energy));
-        for (energies, turn, side) in [([from, first], first, side.opposite()), ([first, second], second, side)] {
+        for (energies, turn, side) in [
+            ([from, first], first, side.opposite()),
+            ([first, second], second, side),
+        ] {
             let [before, after] = energies;
             let mean = 0.5 * (before.energy + after.energy);
             let time = leg.time + stretched * (mean - swing.energy);
-            self.swing([before.energy, after.energy], time, side, [-before.x, after.x]);
+            self.swing(
+                [before.energy, after.energy],
+                time,
+                side,
+                [-before.x, after.x],
+            );
             self.turned(side, turn, None)?;
             if self.stop.is_some() {
                 return None;
@@ -393,7 +442,8 @@ impl<'a> Chain<'a> {
         Some(Place::Turn(side, second, None))
     }
 
-    /// The next turning point with dry friction: half of the viscous damping before it, half after it; nothing where there is none.
+    /// The next turning point with dry friction: half of the viscous damping before it, half after
+    /// it; nothing where there is none.
     fn rub(&mut self, side: Side, from: Spot) -> Option<Place> {
         let to = side.opposite();
         let quarter = |swing: &Swing| Leg::free(swing.quarter.time, swing.quarter.area);
@@ -438,7 +488,12 @@ impl<'a> Chain<'a> {
             if let Some((swing, leg)) = self.reference(energy, Kind::FromPlace, crossing) {
                 let arrived = swing.energy - self.below(&leg);
                 if arrived > ahead.spot.energy {
-                    self.swing([energy, arrived], 2.0 * leg.time, to, [spot.x, ahead.spot.x]);
+                    self.swing(
+                        [energy, arrived],
+                        2.0 * leg.time,
+                        to,
+                        [spot.x, ahead.spot.x],
+                    );
                     return self.contact(ahead, (2.0 * (arrived - ahead.spot.energy)).sqrt());
                 }
             }
@@ -458,7 +513,8 @@ impl<'a> Chain<'a> {
         let lag = leg.lag - leg.rubbed + self.rub_lag(&back, energy, -1.0);
         let time = leg.time - lag + Self::later(&swing, leg.phase, &back, energy);
         self.swing([energy, swing.energy], time, to, [spot.x, turn.x]);
-        // The way back to a barrier that was left is the way there; a start between the barriers is not on one.
+        // The way back to a barrier that was left is the way there; a start between the barriers is
+        // not on one.
         let leaves = |barrier: &Barrier| barrier.spot == back;
         let known = self.barrier(to.opposite()).is_some_and(leaves).then(|| {
             let reach = Stretch {
@@ -482,7 +538,11 @@ impl<'a> Chain<'a> {
             self.held(x);
             return None;
         }
-        if self.settings.rest_energy.is_some_and(|rest| turn.energy <= rest) {
+        if self
+            .settings
+            .rest_energy
+            .is_some_and(|rest| turn.energy <= rest)
+        {
             self.stop = Some(Stop::RestEnergy);
         } else if self.settings.stop_at_rest && has_rested(self.model, &self.turns, self.level) {
             self.stop = Some(Stop::AtRest);
@@ -509,7 +569,11 @@ impl<'a> Chain<'a> {
             self.turns.push(Turn { t: deepest, x });
         }
         self.advance(bounce.duration, Regime::Contact(side), || {
-            ClosedForm::contact((side, x), [bounce.depth, bounce.duration], [speed, bounce.speed_out])
+            ClosedForm::contact(
+                (side, x),
+                [bounce.depth, bounce.duration],
+                [speed, bounce.speed_out],
+            )
         });
         let away = side.opposite();
         let energy = spot.energy + 0.5 * bounce.speed_out * bounce.speed_out;
@@ -518,7 +582,8 @@ impl<'a> Chain<'a> {
             self.state = [x, away.sign() * bounce.speed_out];
             if self.settings.rest_energy.is_some_and(|rest| energy <= rest) {
                 self.stop = Some(Stop::RestEnergy);
-            } else if self.settings.stop_at_rest && has_rested(self.model, &self.turns, self.level) {
+            } else if self.settings.stop_at_rest && has_rested(self.model, &self.turns, self.level)
+            {
                 self.stop = Some(Stop::AtRest);
             }
         }
@@ -580,11 +645,16 @@ impl<'a> Chain<'a> {
             self.state = [x, velocity];
             end_time = from + motion.end_time;
             steps += motion.steps;
-            self.turns
-                .extend(motion.turns.iter().filter(|turn| turn.t > 0.0).map(|turn| Turn {
-                    t: from + turn.t,
-                    ..*turn
-                }));
+            self.turns.extend(
+                motion
+                    .turns
+                    .iter()
+                    .filter(|turn| turn.t > 0.0)
+                    .map(|turn| Turn {
+                        t: from + turn.t,
+                        ..*turn
+                    }),
+            );
             self.impacts
                 .extend(motion.impacts.iter().map(|impact| impact.later(from)));
             self.path.extend(&motion.path, from);
@@ -613,7 +683,8 @@ fn is_positive(value: f64) -> bool {
     value > 0.0
 }
 
-/// The leg between the turning point of a swing and a spot, which is counted from the bottom away from the turning point.
+/// The leg between the turning point of a swing and a spot, which is counted from the bottom away
+/// from the turning point.
 fn leg(model: &Model, swing: &Swing, spot: &Spot, reach: Stretch) -> Leg {
     let Model { zeta, alpha, .. } = *model;
     let phase = spot.phase(swing.energy);
@@ -635,14 +706,19 @@ fn leg(model: &Model, swing: &Swing, spot: &Spot, reach: Stretch) -> Leg {
     }
 }
 
-/// The turning point a' that follows a under friction alone, cos a' - cos a = alpha (a + a'), counted to the other side.
+/// The turning point a' that follows a under friction alone, cos a' - cos a = alpha (a + a'),
+/// counted to the other side.
 ///
 /// With h = (a + a')/2: sin((a - a')/2) = alpha h/sin h, which has lost the root a' = -a.
 fn rubbed(turn: f64, alpha: f64) -> f64 {
     let mut next = turn - 2.0 * alpha;
     for _ in 0..MOST_NEWTON {
         let half = 0.5 * (turn + next);
-        let spread = if half.abs() < 1e-8 { 1.0 } else { half / half.sin() };
+        let spread = if half.abs() < 1e-8 {
+            1.0
+        } else {
+            half / half.sin()
+        };
         let found = turn - 2.0 * (alpha * spread).min(1.0).asin();
         let change = found - next;
         next = found;
@@ -653,14 +729,15 @@ fn rubbed(turn: f64, alpha: f64) -> f64 {
     next
 }
 
-/// By how much a small constant force delays the quarter of a swing from its turning point to the bottom, in parts of the force: dJ/dE of
-/// J = int |x|/x' dx, which is 1/A of a linear swing.
+/// By how much a small constant force delays the quarter of a swing from its turning point to the
+/// bottom, in parts of the force: dJ/dE of J = int |x|/x' dx, which is 1/A of a linear swing.
 ///
 /// ```text
 /// J = 2 sum c_n^2 k^(2n + 1),   c_n = (2^n n!)^2/(2n + 1)!,   E = 2 k^2
 /// ```
 ///
-/// The series is summed with its pole at the upright position, where (1 - k^2) 2 k dJ/dE = pi/2, taken out; good to 0.5 %.
+/// The series is summed with its pole at the upright position, where (1 - k^2) 2 k dJ/dE = pi/2,
+/// taken out; good to 0.5 %.
 fn slowness(energy: f64) -> f64 {
     const COEFFICIENTS: [f64; 4] = [1.0, 1.0 / 3.0, 4.0 / 45.0, 64.0 / 1575.0];
     let square = (0.5 * energy).min(1.0);
@@ -670,14 +747,18 @@ fn slowness(energy: f64) -> f64 {
     0.5 * sum / (square.sqrt() * (1.0 - square)).max(f64::MIN_POSITIVE)
 }
 
-/// The area in the phase plane of the undamped swing of this amplitude, rad, and of the same between the barriers, units of m g L/omega.
+/// The area in the phase plane of the undamped swing of this amplitude, rad, and of the same
+/// between the barriers, units of m g L/omega.
 pub(super) fn actions(model: &Model, amplitude: f64) -> (f64, f64) {
     let swing = Swing::new(Spot::at(amplitude).energy);
     let reach = |side: Side| match model.barrier(side) {
         Some(x) => swing.reach(&Spot::at(side.sign() * x)).area,
         None => swing.quarter.area,
     };
-    (4.0 * swing.quarter.area, 2.0 * (reach(Side::Left) + reach(Side::Right)))
+    (
+        4.0 * swing.quarter.area,
+        2.0 * (reach(Side::Left) + reach(Side::Right)),
+    )
 }
 
 /// The closed form of a stretch between two energies and two places, towards a side.
@@ -686,7 +767,8 @@ fn closed(energies: [f64; 2], time: f64, to: Side, places: [f64; 2]) -> ClosedFo
     let mean = (moduli[0] * moduli[1]).sqrt();
     let parameter = mean * mean;
     let middle = Swing::new(2.0 * parameter);
-    // The time from the bottom of the swing of mean energy to the phase that the place has in its own.
+    // The time from the bottom of the swing of mean energy to the phase that the place has in its
+    // own.
     let phase = |energy: f64, place: f64| {
         let (sine, _) = Spot::at(place).phase(energy);
         middle
@@ -707,7 +789,8 @@ fn closed(energies: [f64; 2], time: f64, to: Side, places: [f64; 2]) -> ClosedFo
 /// Impacts that there is room for from the beginning.
 const MANY: usize = 32;
 
-/// How near the reference energy is to be, in parts of the energy, for one more step without another elliptic integral.
+/// How near the reference energy is to be, in parts of the energy, for one more step without
+/// another elliptic integral.
 const NEAR: f64 = 5e-4;
 
 /// The most turns of an iteration that closes in within a few.
@@ -739,7 +822,10 @@ mod tests {
                 difference.displacement < 1e-9 * amplitude,
                 "{amplitude}: {difference:?}"
             );
-            assert!(difference.velocity < 1e-9 * amplitude, "{amplitude}: {difference:?}");
+            assert!(
+                difference.velocity < 1e-9 * amplitude,
+                "{amplitude}: {difference:?}"
+            );
         }
     }
 
@@ -781,7 +867,10 @@ mod tests {
             left: Some(-0.6),
             ..Model::default()
         };
-        let start = Start { x: 0.1, velocity: 1.2 };
+        let start = Start {
+            x: 0.1,
+            velocity: 1.2,
+        };
         let settings = Settings {
             duration: 30.0,
             ..Settings::default()
@@ -797,14 +886,22 @@ mod tests {
                 continue;
             };
             let (left, right) = (before.at(pair[0].end - pair[0].start).0, after.at(0.0).0);
-            assert!((left - right).abs() < 1e-8, "{left} {right} at {}", pair[0].end);
+            assert!(
+                (left - right).abs() < 1e-8,
+                "{left} {right} at {}",
+                pair[0].end
+            );
         }
     }
 
     #[test]
     fn what_has_no_chain_says_why() {
         let start = Start::default();
-        let refused = |model: Model, start: Start| chain(&model, start, &Settings::default()).unwrap_err().to_string();
+        let refused = |model: Model, start: Start| {
+            chain(&model, start, &Settings::default())
+                .unwrap_err()
+                .to_string()
+        };
         let driven = Model {
             beta: 0.1,
             frequency_ratio: 1.0,
@@ -822,11 +919,20 @@ mod tests {
             ..Model::default()
         };
         assert!(refused(heavy, start).contains("0.7"));
-        let over = Start { x: 0.0, velocity: 2.1 };
+        let over = Start {
+            x: 0.0,
+            velocity: 2.1,
+        };
         assert!(refused(Model::default(), over).contains("turns over"));
-        let upright = Start { x: -3.2, velocity: 0.0 };
+        let upright = Start {
+            x: -3.2,
+            velocity: 0.0,
+        };
         assert!(refused(Model::default(), upright).contains("starts at x = -3.2"));
-        let inside = Start { x: 0.4, velocity: 0.0 };
+        let inside = Start {
+            x: 0.4,
+            velocity: 0.0,
+        };
         assert!(refused(Model::default(), inside).contains("right barrier"));
     }
 }

@@ -1,5 +1,5 @@
-//! The free swing of the pendulum in elliptic integrals: how long it takes from the bottom to an angle, and the area it leaves there in
-//! the phase plane.
+//! The free swing of the pendulum in elliptic integrals: how long it takes from the bottom to an
+//! angle, and the area it leaves there in the phase plane.
 //!
 //! ```text
 //! x'^2/2 + 2 sin^2(x/2) = E = 2 m,   sin(x/2) = sqrt(m) sin phi,   x' = 2 sqrt(m) cos phi
@@ -8,8 +8,9 @@
 //! F = s R_F(c^2, 1 - m s^2, 1),   D = (s^3/3) R_D(c^2, 1 - m s^2, 1),   s = sin phi, c = cos phi
 //! ```
 //!
-//! (DLMF 19.25.5, 19.25.13, 22.19; the symmetric integrals by duplication, 19.36.) d(area)/dE is the time: the area is the action
-//! of the stretch, which viscous damping shrinks as exp(-2 zeta t).
+//! (DLMF 19.25.5, 19.25.13, 22.19; the symmetric integrals by duplication, 19.36.) d(area)/dE is
+//! the time: the area is the action of the stretch, which viscous damping shrinks as exp(-2 zeta
+//! t).
 
 use std::f64::consts::PI;
 
@@ -65,7 +66,8 @@ impl Spot {
         }
     }
 
-    /// (sin phi, cos phi) of the swing of this energy here; 1 and 0 at its turning point and beyond it.
+    /// (sin phi, cos phi) of the swing of this energy here; 1 and 0 at its turning point and beyond
+    /// it.
     pub fn phase(&self, energy: f64) -> (f64, f64) {
         let left = 0.5 * energy - self.half * self.half;
         if left <= 0.0 {
@@ -91,9 +93,11 @@ impl Swing {
         let parameter = 0.5 * energy;
         let time = ellpk(1.0 - parameter);
         let area = match parameter < SMALL {
-            // The difference has lost the digits: pi m 2F1(1/2, 1/2; 2; m) instead (DLMF 19.5.1, 19.5.2).
+            // The difference has lost the digits: pi m 2F1(1/2, 1/2; 2; m) instead (DLMF
+            // 19.5.1, 19.5.2).
             true => {
-                let series = 1.0 + parameter * (0.125 + parameter * (3.0 / 64.0 + parameter * 25.0 / 1024.0));
+                let series = 1.0
+                    + parameter * (0.125 + parameter * (3.0 / 64.0 + parameter * 25.0 / 1024.0));
                 PI * parameter * series
             }
             false => 4.0 * (ellpe(parameter) - (1.0 - parameter) * time),
@@ -104,7 +108,8 @@ impl Swing {
         }
     }
 
-    /// From the bottom to this spot, on the way to the right; beyond the turning point as far as that.
+    /// From the bottom to this spot, on the way to the right; beyond the turning point as far as
+    /// that.
     pub fn reach(&self, spot: &Spot) -> Stretch {
         let (sine, cosine) = spot.phase(self.energy);
         if cosine == 0.0 {
@@ -127,7 +132,8 @@ impl Swing {
 fn symmetric_integrals(x: f64, y: f64) -> (f64, f64) {
     let (mut x, mut y, mut z) = (x, y, 1.0_f64);
     let (mut sum, mut power) = (0.0, 1.0);
-    // Each turn brings the three four times closer; the terms left out are of the sixth order in their distance.
+    // Each turn brings the three four times closer; the terms left out are of the sixth order in
+    // their distance.
     for _ in 0..MOST_DUPLICATIONS {
         let (a, b, c) = (x.sqrt(), y.sqrt(), z.sqrt());
         let shift = a * (b + c) + b * c;
@@ -143,7 +149,8 @@ fn symmetric_integrals(x: f64, y: f64) -> (f64, f64) {
     let (u, v) = (1.0 - x / mean, 1.0 - y / mean);
     let w = -u - v;
     let (second, third) = (u * v - w * w, u * v * w);
-    let first = (1.0 + second * (second / 24.0 - 0.1 - 3.0 * third / 44.0) + third / 14.0) / mean.sqrt();
+    let first =
+        (1.0 + second * (second / 24.0 - 0.1 - 3.0 * third / 44.0) + third / 14.0) / mean.sqrt();
     let mean = (x + y + 3.0 * z) / 5.0;
     let (u, v) = (1.0 - x / mean, 1.0 - y / mean);
     let w = -(u + v) / 3.0;
@@ -162,8 +169,8 @@ fn symmetric_integrals(x: f64, y: f64) -> (f64, f64) {
 /// m below which the area of a quarter is a series: its first term left out is 0.015 m^4.
 const SMALL: f64 = 1e-3;
 
-/// How near each other the arguments are, in parts of their sum, when the series take over: a deviation of 0.03 from their mean leaves
-/// an error of 1e-9.
+/// How near each other the arguments are, in parts of their sum, when the series take over: a
+/// deviation of 0.03 from their mean leaves an error of 1e-9.
 const CLOSE: f64 = 0.015;
 
 /// Far more than any argument needs: 4^-40 is below the resolution of a double.
@@ -180,7 +187,10 @@ mod tests {
             let swing = Swing::new(Spot::at(amplitude).energy);
             let m = 0.5 * swing.energy;
             let (first, second) = (ellipk(m).unwrap(), ellipe(m).unwrap());
-            assert!((swing.quarter.time / first - 1.0).abs() < 1e-13, "{amplitude}");
+            assert!(
+                (swing.quarter.time / first - 1.0).abs() < 1e-13,
+                "{amplitude}"
+            );
             let area = 4.0 * (second - (1.0 - m) * first);
             assert!((swing.quarter.area - area).abs() < 1e-14, "{amplitude}");
             for part in [-0.999_999, -0.6, -0.1, 1e-9, 0.2, 0.5, 0.9, 0.999] {
@@ -223,8 +233,8 @@ mod tests {
         for (amplitude, x) in [(1.5, 0.323), (0.5, -0.2), (2.9, 1.0), (1.0, 2.0)] {
             let energy = Spot::at(amplitude).energy;
             let step = 1e-5 * energy;
-            let [below, above] =
-                [energy - step, energy + step].map(|energy| Swing::new(energy).reach(&Spot::at(x)).area);
+            let [below, above] = [energy - step, energy + step]
+                .map(|energy| Swing::new(energy).reach(&Spot::at(x)).area);
             let time = Swing::new(energy).reach(&Spot::at(x)).time;
             assert!(
                 ((above - below) / (2.0 * step) / time - 1.0).abs() < 1e-7,

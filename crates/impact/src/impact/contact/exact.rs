@@ -1,7 +1,8 @@
 //! The exact contact: any force of the depth, d'' + g(d) = 0, from touch to release.
 //!
-//! In: g, the whole force in contact per unit of mass, g(d) = f(x_c + d) + gamma F(d), as a closure, and the speed v of touch. Out: an
-//! [`ExactContact`]: depth D, duration T, the motion, which is symmetric about its middle, and its [`SineSeries`].
+//! In: g, the whole force in contact per unit of mass, g(d) = f(x_c + d) + gamma F(d), as a
+//! closure, and the speed v of touch. Out: an [`ExactContact`]: depth D, duration T, the motion,
+//! which is symmetric about its middle, and its [`SineSeries`].
 //!
 //! ```text
 //! v^2/2 = W(D),  W(d) = int_0^d g                 u(d) = sqrt(v^2 - 2 W(d)) the speed at depth d
@@ -12,11 +13,12 @@
 //! b_k = (4/(k pi)) int_0^D cos(k pi t(d)/T) dd - 4 g(0) T^2/(k pi)^3
 //! ```
 //!
-//! (L. D. Landau and E. M. Lifshitz, *Mechanics*, 3rd ed., section 11, for the time by the energy.) Neither u nor h is a difference of
-//! nearly equal numbers, however slow the touch, whatever acts beside the contact. Both are kept as Legendre series on panels, halved
-//! until the last coefficients vanish; the time is their integral term by term, the motion its inverse by a root. The parabola carries
-//! the jump of the acceleration at touch, so that b_k falls as 1/k^5 or, for d^n, as 1/k^(n + 3): 16 sines are a Hertz contact to
-//! 1e-6 of its depth.
+//! (L. D. Landau and E. M. Lifshitz, *Mechanics*, 3rd ed., section 11, for the time by the energy.)
+//! Neither u nor h is a difference of nearly equal numbers, however slow the touch, whatever acts
+//! beside the contact. Both are kept as Legendre series on panels, halved until the last
+//! coefficients vanish; the time is their integral term by term, the motion its inverse by a root.
+//! The parabola carries the jump of the acceleration at touch, so that b_k falls as 1/k^5 or, for
+//! d^n, as 1/k^(n + 3): 16 sines are a Hertz contact to 1e-6 of its depth.
 //!
 //! ```
 //! # use lindstedt_impact as lindstedt;
@@ -48,7 +50,8 @@ const MOST_HARMONICS: usize = 64;
 /// Parts of equal time in which a motion is sampled for its sines.
 const PARTS: usize = 512;
 
-/// A contact under any force of the depth. Made by [`ExactContact::new`], so that all fields belong together.
+/// A contact under any force of the depth. Made by [`ExactContact::new`], so that all fields belong
+/// together.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ExactContact {
@@ -69,13 +72,15 @@ pub struct ExactContact {
 }
 
 impl ExactContact {
-    /// The contact under this force (of the depth d >= 0, per unit of mass, positive out of the barrier), touched at this speed.
+    /// The contact under this force (of the depth d >= 0, per unit of mass, positive out of the
+    /// barrier), touched at this speed.
     ///
     /// Depth and duration are good to 1e-12 for a smooth force.
     ///
     /// # Errors
-    /// [`ContactError`]: a speed that is no positive number; a force that never turns the motion back, has no finite value on the way
-    /// or is not smooth there; a depth or a duration beyond double precision.
+    /// [`ContactError`]: a speed that is no positive number; a force that never turns the motion
+    /// back, has no finite value on the way or is not smooth there; a depth or a duration beyond
+    /// double precision.
     pub fn new(force: impl Fn(f64) -> f64, speed: f64) -> Result<Self, ContactError> {
         let speed = positive("speed of contact", speed)?;
         in_range("energy", speed * speed)?;
@@ -136,7 +141,10 @@ impl ExactContact {
         } else {
             let (w, rate) = invert(&self.second, (0.5 * self.duration - time).abs());
             let shallower = 1.0 - w * w;
-            (self.depth * shallower * shallower, 4.0 * self.depth.sqrt() * w / rate)
+            (
+                self.depth * shallower * shallower,
+                4.0 * self.depth.sqrt() * w / rate,
+            )
         };
         (depth, if falling { -speed } else { speed })
     }
@@ -151,7 +159,8 @@ impl ExactContact {
         self.at(time).1
     }
 
-    /// The motion as a parabola and odd sines, as many as are needed to stay within `tolerance` of D, at most 64.
+    /// The motion as a parabola and odd sines, as many as are needed to stay within `tolerance` of
+    /// D, at most 64.
     ///
     /// What is left is in [`SineSeries::deviation`]: ask it where the tolerance matters.
     pub fn sine_series(&self, tolerance: f64) -> SineSeries {
@@ -166,7 +175,12 @@ impl ExactContact {
         // Half the contact is enough, and its middle is where the sines add up to the most.
         let times = (1..=256).map(|part| 0.5 * duration * f64::from(part) / 256.0);
         let mut left: Vec<(f64, f64)> = times
-            .map(|time| (time, self.position(time) - series.parabola * time * (duration - time)))
+            .map(|time| {
+                (
+                    time,
+                    self.position(time) - series.parabola * time * (duration - time),
+                )
+            })
             .collect();
         for coefficient in self.coefficients() {
             let angle = (2 * series.harmonics.len() + 1) as f64 * PI / duration;
@@ -189,20 +203,22 @@ impl ExactContact {
         let wave = PI / self.duration;
         let highest = (2 * MOST_HARMONICS - 1) as f64;
         let deepest = self.depth.sqrt();
-        // (angle of the first harmonic, element of the depth), so dense that the highest harmonic turns by no more than 6 rad in a piece.
+        // (angle of the first harmonic, element of the depth), so dense that the highest harmonic
+        // turns by no more than 6 rad in a piece.
         let mut elements: Vec<(f64, f64)> = Vec::new();
-        let mut gather = |panels: &[Panel], angle: &dyn Fn(f64) -> f64, element: &dyn Fn(f64) -> f64| {
-            for panel in panels {
-                let pieces = 1 + (highest * wave * (panel.end - panel.start) / 6.0) as usize;
-                let width = (panel.to - panel.from) / pieces as f64;
-                for piece in 0..pieces {
-                    let from = panel.from + width * piece as f64;
-                    for (at, weight) in nodes_and_weights(from, from + width) {
-                        elements.push((wave * angle(panel.time_at(at)), weight * element(at)));
+        let mut gather =
+            |panels: &[Panel], angle: &dyn Fn(f64) -> f64, element: &dyn Fn(f64) -> f64| {
+                for panel in panels {
+                    let pieces = 1 + (highest * wave * (panel.end - panel.start) / 6.0) as usize;
+                    let width = (panel.to - panel.from) / pieces as f64;
+                    for piece in 0..pieces {
+                        let from = panel.from + width * piece as f64;
+                        for (at, weight) in nodes_and_weights(from, from + width) {
+                            elements.push((wave * angle(panel.time_at(at)), weight * element(at)));
+                        }
                     }
                 }
-            }
-        };
+            };
         gather(&self.first, &|time| time, &|q| 2.0 * q);
         gather(&self.second, &|before| 0.5 * self.duration - before, &|w| {
             4.0 * deepest * deepest * (1.0 - w * w) * w
@@ -219,14 +235,15 @@ impl ExactContact {
     }
 }
 
-/// The motion of a contact in elementary functions: d(s) = parabola s (T - s) + sum_k b_k sin(k pi s/T), of odd k alone where the way
-/// out mirrors the way in.
+/// The motion of a contact in elementary functions: d(s) = parabola s (T - s) + sum_k b_k sin(k pi
+/// s/T), of odd k alone where the way out mirrors the way in.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct SineSeries {
     /// The duration T, in the unit of time.
     pub duration: f64,
-    /// The coefficient g(0)/2 of s (T - s), depth per time squared: it carries the acceleration at touch.
+    /// The coefficient g(0)/2 of s (T - s), depth per time squared: it carries the acceleration at
+    /// touch.
     pub parabola: f64,
     /// b_1, b_3, b_5, .., in the unit of x.
     pub harmonics: Vec<f64>,
@@ -237,7 +254,8 @@ pub struct SineSeries {
 }
 
 impl SineSeries {
-    /// The series of these numbers, a motion of its own: T, the coefficient of s (T - s), and b_1, b_3, ..
+    /// The series of these numbers, a motion of its own: T, the coefficient of s (T - s), and b_1,
+    /// b_3, ..
     pub fn new(duration: f64, parabola: f64, harmonics: Vec<f64>) -> Self {
         Self {
             duration,
@@ -248,11 +266,11 @@ impl SineSeries {
         }
     }
 
-    /// The series of a motion from touch to release, given at any time and as deep as `depth`: as many sines as stay within `tolerance`
-    /// of that, at most 64 odd and 64 even ones.
+    /// The series of a motion from touch to release, given at any time and as deep as `depth`: as
+    /// many sines as stay within `tolerance` of that, at most 64 odd and 64 even ones.
     ///
-    /// `parabola` is half of what bends the motion back at touch and at release; without it the sines go on for longer. What is left is
-    /// in [`SineSeries::deviation`].
+    /// `parabola` is half of what bends the motion back at touch and at release; without it the
+    /// sines go on for longer. What is left is in [`SineSeries::deviation`].
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -263,25 +281,36 @@ impl SineSeries {
     /// assert!(series.deviation <= 1e-6 && (series.at(contact.duration).1 + contact.exit_speed).abs() < 1e-3);
     /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
     /// ```
-    pub fn of(position: impl Fn(f64) -> f64, duration: f64, parabola: f64, depth: f64, tolerance: f64) -> Self {
+    pub fn of(
+        position: impl Fn(f64) -> f64,
+        duration: f64,
+        parabola: f64,
+        depth: f64,
+        tolerance: f64,
+    ) -> Self {
         let mut series = Self {
             deviation: f64::INFINITY,
             ..Self::new(duration, parabola, vec![])
         };
-        let sine = |number: usize, part: usize| (PI * ((number * part) % (2 * PARTS)) as f64 / PARTS as f64).sin();
+        let sine = |number: usize, part: usize| {
+            (PI * ((number * part) % (2 * PARTS)) as f64 / PARTS as f64).sin()
+        };
         let mut left: Vec<f64> = (1..PARTS)
             .map(|part| {
                 let time = duration * part as f64 / PARTS as f64;
                 position(time) - parabola * time * (duration - time)
             })
             .collect();
-        let is_mirrored = (1..PARTS / 2).all(|part| (left[part - 1] - left[PARTS - part - 1]).abs() <= 1e-9 * depth);
+        let is_mirrored = (1..PARTS / 2)
+            .all(|part| (left[part - 1] - left[PARTS - part - 1]).abs() <= 1e-9 * depth);
         for number in 1..=2 * MOST_HARMONICS {
             if number % 2 == 0 && is_mirrored {
                 continue;
             }
             // The trapezium is exact but for harmonics beyond twice the number of parts.
-            let sum: f64 = (1..PARTS).map(|part| left[part - 1] * sine(number, part)).sum();
+            let sum: f64 = (1..PARTS)
+                .map(|part| left[part - 1] * sine(number, part))
+                .sum();
             let coefficient = 2.0 / PARTS as f64 * sum;
             for part in 1..PARTS {
                 left[part - 1] -= coefficient * sine(number, part);
@@ -290,7 +319,10 @@ impl SineSeries {
                 0 => series.even.push(coefficient),
                 _ => series.harmonics.push(coefficient),
             }
-            series.deviation = left.iter().fold(0.0, |worst: f64, rest| worst.max(rest.abs())) / depth;
+            series.deviation = left
+                .iter()
+                .fold(0.0, |worst: f64, rest| worst.max(rest.abs()))
+                / depth;
             if series.deviation <= tolerance {
                 break;
             }
@@ -312,7 +344,8 @@ impl SineSeries {
         let time = within(time, self.duration);
         let mut depth = self.parabola * time * (self.duration - time);
         let mut velocity = self.parabola * (self.duration - 2.0 * time);
-        // exp(i k phi) of the odd k, and of the even ones, one turn by 2 phi after the other: one sine and cosine for all.
+        // exp(i k phi) of the odd k, and of the even ones, one turn by 2 phi after the other: one
+        // sine and cosine for all.
         let first = PI / self.duration;
         let wave = Complex64::cis(first * time);
         let turn = wave * wave;
@@ -355,15 +388,19 @@ impl SineSeries {
                 (false, _) => "+ ",
                 (true, _) => "- ",
             };
-            text += &format!(" {sign}{} {function}", significant(coefficient.abs(), digits));
+            text += &format!(
+                " {sign}{} {function}",
+                significant(coefficient.abs(), digits)
+            );
         }
         text
     }
 }
 
-/// An integral from zero at rising places, each from the one before: a corner or a jump on the way is met once, not by every integral
-/// beyond it. Who goes back to look closer has what was known beyond forgotten: a jump that a longer piece had at its very end, behind
-/// all points of the rule, is seen by a shorter one.
+/// An integral from zero at rising places, each from the one before: a corner or a jump on the way
+/// is met once, not by every integral beyond it. Who goes back to look closer has what was known
+/// beyond forgotten: a jump that a longer piece had at its very end, behind all points of the rule,
+/// is seen by a shorter one.
 struct Running<F> {
     integrand: F,
     /// The size of the whole of which the integral is a part: errors count relative to it.
@@ -396,12 +433,22 @@ fn work(force: impl Fn(f64) -> f64, q: f64, energy: f64) -> Result<f64, Quadratu
     integrate_part(|q| 2.0 * q * force(q * q), [0.0, q], 1e-14, energy)
 }
 
-/// The same by pieces in the golden section, none of which ends where a panel that was halved does: a jump of the force beside such an
-/// end lies behind all points of a rule.
-fn work_by_sections(force: impl Fn(f64) -> f64, q: f64, energy: f64) -> Result<f64, QuadratureError> {
+/// The same by pieces in the golden section, none of which ends where a panel that was halved does:
+/// a jump of the force beside such an end lies behind all points of a rule.
+fn work_by_sections(
+    force: impl Fn(f64) -> f64,
+    q: f64,
+    energy: f64,
+) -> Result<f64, QuadratureError> {
     const PIECES: i32 = 60;
     const SECTION: f64 = 0.618_033_988_749_894_9;
-    let end_of = |piece: i32| if piece < PIECES { q - q * SECTION.powi(piece) } else { q };
+    let end_of = |piece: i32| {
+        if piece < PIECES {
+            q - q * SECTION.powi(piece)
+        } else {
+            q
+        }
+    };
     (0..PIECES)
         .map(|piece| {
             let ends = [end_of(piece), end_of(piece + 1)];
@@ -468,7 +515,10 @@ mod tests {
     use proptest::prelude::*;
 
     fn integrated(force: &dyn Fn(f64) -> f64, contact: &ExactContact) -> Trajectory {
-        by_runge_kutta(|d, _| force(d), [contact.speed, contact.depth, 2.0 * contact.duration])
+        by_runge_kutta(
+            |d, _| force(d),
+            [contact.speed, contact.depth, 2.0 * contact.duration],
+        )
     }
 
     #[test]
@@ -477,7 +527,8 @@ mod tests {
             for stiffness in [1.0, 1e3, 1e6, 1e9] {
                 for speed in [1e-6, 1e-3, 1.0, 10.0] {
                     let law = PowerLaw::new(exponent, stiffness, speed).unwrap();
-                    let contact = ExactContact::new(|d| stiffness * d.powf(exponent), speed).unwrap();
+                    let contact =
+                        ExactContact::new(|d| stiffness * d.powf(exponent), speed).unwrap();
                     assert!(
                         (contact.depth / law.depth - 1.0).abs() < 1e-13,
                         "{law:?}: {}",
@@ -491,7 +542,8 @@ mod tests {
                     assert!((contact.peak_force / law.peak_force - 1.0).abs() < 1e-12);
                     for part in 0..=40 {
                         let time = law.duration * f64::from(part) / 40.0;
-                        let ((depth, velocity), (expected, expected_velocity)) = (contact.at(time), law.at(time));
+                        let ((depth, velocity), (expected, expected_velocity)) =
+                            (contact.at(time), law.at(time));
                         assert!(
                             (depth - expected).abs() < 1e-12 * law.depth,
                             "{law:?} at {part}/40: {depth}"
@@ -500,15 +552,19 @@ mod tests {
                             (velocity - expected_velocity).abs() < 4e-12 * speed,
                             "{law:?} at {part}/40: {velocity}"
                         );
-                        assert_eq!((contact.position(time), contact.velocity(time)), (depth, velocity));
+                        assert_eq!(
+                            (contact.position(time), contact.velocity(time)),
+                            (depth, velocity)
+                        );
                     }
                 }
             }
         }
     }
 
-    /// A spring whose force jumps at a depth: two pieces of sines, k (D^2 - d0^2) + 2 F (D - d0) = v^2 - k d0^2. Depth and duration are
-    /// good to 1e-11 where the jump is seen by all rules, to 1e-4 at every place of this grid.
+    /// A spring whose force jumps at a depth: two pieces of sines, k (D^2 - d0^2) + 2 F (D - d0) =
+    /// v^2 - k d0^2. Depth and duration are good to 1e-11 where the jump is seen by all rules, to
+    /// 1e-4 at every place of this grid.
     #[test]
     fn a_jump_on_the_way_is_met_in_closed_form() {
         let (stiffness, speed) = (400.0_f64, 1.0_f64);
@@ -518,8 +574,11 @@ mod tests {
             .chain([(0.02, 1e-11)]);
         for (jump_at, bound) in places {
             for jump in [1e-3, 1.0, 30.0] {
-                let contact =
-                    ExactContact::new(|d| stiffness * d + if d > jump_at { jump } else { 0.0 }, speed).unwrap();
+                let contact = ExactContact::new(
+                    |d| stiffness * d + if d > jump_at { jump } else { 0.0 },
+                    speed,
+                )
+                .unwrap();
                 let centre = jump / stiffness;
                 let whole = centre * centre + speed * speed / stiffness + 2.0 * centre * jump_at;
                 let depth = whole.sqrt() - centre;
@@ -535,7 +594,8 @@ mod tests {
                 );
                 for part in 1..8 {
                     let time = before + beyond * f64::from(part) / 8.0;
-                    let expected = (depth + centre) * (omega * (before + beyond - time)).cos() - centre;
+                    let expected =
+                        (depth + centre) * (omega * (before + beyond - time)).cos() - centre;
                     let (found, _) = contact.at(time);
                     assert!(
                         (found - expected).abs() < bound * depth,
@@ -546,7 +606,8 @@ mod tests {
         }
     }
 
-    /// The pendulum at a barrier: where it stands, gamma, speed of touch, harmonics allowed for 1e-6.
+    /// The pendulum at a barrier: where it stands, gamma, speed of touch, harmonics allowed for
+    /// 1e-6.
     const PENDULUM: [(f64, f64, f64, usize); 9] = [
         (0.323, 1.0, 1.0, 12),
         (0.323, 1.0, 0.01, 2),
@@ -609,7 +670,12 @@ mod tests {
 
     #[test]
     fn a_spring_with_a_preload_is_its_closed_form() {
-        for (a, stiffness, speed) in [(0.3, 1e4, 1.0), (-0.3, 1.0, 1e-3), (5.0, 2.0, 1e-4), (-2.0, 1e9, 1e-6)] {
+        for (a, stiffness, speed) in [
+            (0.3, 1e4, 1.0),
+            (-0.3, 1.0, 1e-3),
+            (5.0, 2.0, 1e-4),
+            (-2.0, 1e9, 1e-6),
+        ] {
             let contact = ExactContact::new(|d| a + stiffness * d, speed).unwrap();
             let wave = f64::sqrt(stiffness);
             let centre = a / stiffness;
@@ -647,20 +713,30 @@ mod tests {
     #[test]
     fn few_sines_are_the_motion_to_a_millionth() {
         for (barrier, stiffness, speed, allowed) in PENDULUM {
-            let contact = ExactContact::new(|d| f64::sin(barrier + d) + stiffness * d.powf(1.5), speed).unwrap();
+            let contact =
+                ExactContact::new(|d| f64::sin(barrier + d) + stiffness * d.powf(1.5), speed)
+                    .unwrap();
             let series = contact.sine_series(1e-6);
             let case = format!(
                 "barrier {barrier}, gamma {stiffness}, v {speed}: {} harmonics",
                 series.harmonics.len()
             );
-            assert!(series.deviation <= 1e-6, "{case}, {} left", series.deviation);
+            assert!(
+                series.deviation <= 1e-6,
+                "{case}, {} left",
+                series.deviation
+            );
             assert!(series.harmonics.len() <= allowed, "{case}");
             let mut worst = 0.0_f64;
             for part in 0..=777 {
                 let time = contact.duration * f64::from(part) / 777.0;
                 worst = worst.max((series.at(time).0 - contact.position(time)).abs());
             }
-            assert!(worst <= 1.1e-6 * contact.depth, "{case}: {}", worst / contact.depth);
+            assert!(
+                worst <= 1.1e-6 * contact.depth,
+                "{case}: {}",
+                worst / contact.depth
+            );
             assert!(
                 series.closed_form(9).starts_with("d(s) = "),
                 "{}",
@@ -700,7 +776,10 @@ mod tests {
             |d: f64| (1.0 - d * d).sqrt() / 9.0,
         ] {
             let refused = ExactContact::new(force, 5.0).unwrap_err();
-            assert!(matches!(refused, ContactError::NeverTurns { .. }), "{refused}");
+            assert!(
+                matches!(refused, ContactError::NeverTurns { .. }),
+                "{refused}"
+            );
         }
         assert!(ExactContact::new(|_| f64::NAN, 1.0).is_err());
         // Up to a hump it turns, over it it does not: the search finds the first place.

@@ -1,7 +1,8 @@
 //! A contact as half an oscillation: homotopy, iteration and the balance of harmonics.
 //!
-//! In: the whole force g(d) of the depth and the speed v of touch. Out: a [`SineSeries`] of odd sines, d(0) = d(T) = 0,
-//! phi = Omega s, d'(0) = v, whose duration is T = pi/Omega. With s_k(A) = (2/pi) int_0^pi g(A sin phi) sin k phi dphi:
+//! In: the whole force g(d) of the depth and the speed v of touch. Out: a [`SineSeries`] of odd
+//! sines, d(0) = d(T) = 0, phi = Omega s, d'(0) = v, whose duration is T = pi/Omega. With s_k(A) =
+//! (2/pi) int_0^pi g(A sin phi) sin k phi dphi:
 //!
 //! ```text
 //! homotopy            Omega^2 = s_1/A,  d = A sin phi
@@ -11,8 +12,8 @@
 //! harmonic-balance-N  k^2 Omega^2 b_k = (2/pi) int_0^pi g(d) sin k phi dphi, k = 1, 3 .. 2 N - 1,  d = sum b_k sin k phi
 //! ```
 //!
-//! (J.-H. He, *Comput. Methods Appl. Mech. Eng.* 178 (1999) 257, *J. Vib. Control* 7 (2001) 631; A. H. Nayfeh and D. T. Mook,
-//! *Nonlinear Oscillations*, 1979, section 2.3.4, for the balance.)
+//! (J.-H. He, *Comput. Methods Appl. Mech. Eng.* 178 (1999) 257, *J. Vib. Control* 7 (2001) 631; A.
+//! H. Nayfeh and D. T. Mook, *Nonlinear Oscillations*, 1979, section 2.3.4, for the balance.)
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -58,9 +59,11 @@ impl HalfOscillation<'_> {
         coefficients
     }
 
-    /// Omega^2 and the motion by homotopy or iteration, for the amplitude that begins with the speed of touch.
+    /// Omega^2 and the motion by homotopy or iteration, for the amplitude that begins with the
+    /// speed of touch.
     pub(super) fn perturbed(&self, order: Order) -> Result<SineSeries, ContactError> {
-        // The square of d'(0), with the sign that tells on which side of an oscillation the amplitude lies.
+        // The square of d'(0), with the sign that tells on which side of an oscillation the
+        // amplitude lies.
         let squared_speed = |amplitude: f64| {
             let (square, sines) = self.perturbation(amplitude, order);
             let slope = sum_of_slopes(&sines);
@@ -124,7 +127,8 @@ impl HalfOscillation<'_> {
             let sines: Vec<f64> = unknown.iter().take(count).copied().collect();
             let mut residual = DVector::zeros(count + 1);
             for (phi, weight) in quarter() {
-                let force = weight * (self.force)(scale * sine_sum(&sines, phi)) / (scale * frequency * frequency);
+                let force = weight * (self.force)(scale * sine_sum(&sines, phi))
+                    / (scale * frequency * frequency);
                 for number in 0..count {
                     residual[number] -= 4.0 / PI * force * ((2 * number + 1) as f64 * phi).sin();
                 }
@@ -160,8 +164,16 @@ impl HalfOscillation<'_> {
         if size.is_nan() || size > 1e-9 || unknown[count] <= 0.0 {
             return Err(ContactError::NotOscillating);
         }
-        let harmonics = unknown.iter().take(count).map(|part| scale * part).collect();
-        Ok(SineSeries::new(PI / (frequency * unknown[count]), 0.0, harmonics))
+        let harmonics = unknown
+            .iter()
+            .take(count)
+            .map(|part| scale * part)
+            .collect();
+        Ok(SineSeries::new(
+            PI / (frequency * unknown[count]),
+            0.0,
+            harmonics,
+        ))
     }
 }
 
@@ -169,7 +181,10 @@ impl HalfOscillation<'_> {
 fn quarter() -> impl Iterator<Item = (f64, f64)> {
     let end = FRAC_PI_2.sqrt();
     (0..4).flat_map(move |panel| {
-        let (from, to) = (end * f64::from(panel) / 4.0, end * f64::from(panel + 1) / 4.0);
+        let (from, to) = (
+            end * f64::from(panel) / 4.0,
+            end * f64::from(panel + 1) / 4.0,
+        );
         nodes_and_weights(from, to).map(|(u, weight)| (u * u, 2.0 * u * weight))
     })
 }
@@ -186,7 +201,8 @@ fn sum_of_slopes(harmonics: &[f64]) -> f64 {
     harmonics.iter().enumerate().map(term).sum()
 }
 
-/// The place above zero at which a function that grows changes its sign, searched by doubling and halving from one.
+/// The place above zero at which a function that grows changes its sign, searched by doubling and
+/// halving from one.
 fn rising_root(function: impl Fn(f64) -> f64) -> Option<f64> {
     let (mut low, mut high) = (1.0, 1.0);
     // What is no number lies too far.
@@ -209,7 +225,10 @@ fn rising_root(function: impl Fn(f64) -> f64) -> Option<f64> {
 }
 
 /// The inverse Jacobian, by central differences, times the residual.
-fn newton_step(residual: impl Fn(&DVector<f64>) -> DVector<f64>, at: &DVector<f64>) -> Option<DVector<f64>> {
+fn newton_step(
+    residual: impl Fn(&DVector<f64>) -> DVector<f64>,
+    at: &DVector<f64>,
+) -> Option<DVector<f64>> {
     let size = at.len();
     let mut jacobian = DMatrix::zeros(size, size);
     let step = 1e-6;
@@ -217,7 +236,10 @@ fn newton_step(residual: impl Fn(&DVector<f64>) -> DVector<f64>, at: &DVector<f6
         let (mut above, mut below) = (at.clone(), at.clone());
         above[column] += step;
         below[column] -= step;
-        jacobian.set_column(column, &((residual(&above) - residual(&below)) / (2.0 * step)));
+        jacobian.set_column(
+            column,
+            &((residual(&above) - residual(&below)) / (2.0 * step)),
+        );
     }
     jacobian.lu().solve(&residual(at))
 }

@@ -1,7 +1,8 @@
 //! The contact that loses energy: d'' = -gamma d^n (1 + lambda d'), in closed form.
 //!
-//! Reference: K. H. Hunt and F. R. E. Crossley, *J. Appl. Mech.* 42 (1975) 440. In equation (7) the force is (gamma + mu d') d^(3/2), so
-//! lambda = mu/gamma. In the phase plane, u = d', the variables separate:
+//! Reference: K. H. Hunt and F. R. E. Crossley, *J. Appl. Mech.* 42 (1975) 440. In equation (7) the
+//! force is (gamma + mu d') d^(3/2), so lambda = mu/gamma. In the phase plane, u = d', the
+//! variables separate:
 //!
 //! ```text
 //! u du / (1 + lambda u) = -gamma d^n dd          G(z) = z - ln(1 + z) = z^2/2 - z^3/3 + ..,   z = lambda u, m = n + 1
@@ -11,16 +12,18 @@
 //! loading 1 + z = -W_-1(-exp(-1 - G)),  unloading 1 + z = -W_0(-exp(-1 - G)),    force = gamma d^n (1 + z)
 //! ```
 //!
-//! with W Lambert's function. Neither branch is computed by W: near the deepest point, and all along where lambda v is small, its
-//! argument -exp(-1 - G) has lost the digits of z, and beyond G = 745 it underflows. `G(z) = z^2 (1 + psi(z))/2` is inverted by a root
-//! instead, psi by its series near zero.
+//! with W Lambert's function. Neither branch is computed by W: near the deepest point, and all
+//! along where lambda v is small, its argument -exp(-1 - G) has lost the digits of z, and beyond G
+//! = 745 it underflows. `G(z) = z^2 (1 + psi(z))/2` is inverted by a root instead, psi by its
+//! series near zero.
 //!
 //! ```text
 //! T = (2 D/(m v)) int_0^pi (sin phi)^(2/m - 1) cos phi / r dphi,        (d/D)^m = sin^2 phi,  u = v r,  S = sqrt(2 G(lambda v))
 //!   = (2 D lambda/(m S)) B(1/m, 1/2) (1 + m S^2/(12 (m + 2)) + ..)      the odd powers of S cancel between way in and way out
 //! ```
 //!
-//! The force is never negative: on the way out 1 + z lies between 0 and 1, so this contact does not pull.
+//! The force is never negative: on the way out 1 + z lies between 0 and 1, so this contact does not
+//! pull.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -31,8 +34,8 @@ use super::time::{Panel, expand, invert, length};
 use super::{ContactError, in_range, within};
 use crate::numeric::ode::root::find_root;
 
-/// One contact by d'' = -gamma d^n (1 + lambda d'), touched with speed v. Made by [`HuntCrossley::new`], so that all fields belong
-/// together.
+/// One contact by d'' = -gamma d^n (1 + lambda d'), touched with speed v. Made by
+/// [`HuntCrossley::new`], so that all fields belong together.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct HuntCrossley {
@@ -70,7 +73,8 @@ impl HuntCrossley {
     /// The contact of this exponent n, stiffness gamma and damping lambda, touched at this speed.
     ///
     /// # Errors
-    /// [`ContactError`]: a quantity outside its domain, a depth, duration or force beyond double precision.
+    /// [`ContactError`]: a quantity outside its domain, a depth, duration or force beyond double
+    /// precision.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -83,7 +87,12 @@ impl HuntCrossley {
     /// assert!(contact.peak_depth < contact.depth);
     /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
     /// ```
-    pub fn new(exponent: f64, stiffness: f64, damping: f64, speed: f64) -> Result<Self, ContactError> {
+    pub fn new(
+        exponent: f64,
+        stiffness: f64,
+        damping: f64,
+        speed: f64,
+    ) -> Result<Self, ContactError> {
         let exponent = positive("exponent of the force", exponent)?;
         let stiffness = positive("stiffness gamma", stiffness)?;
         let speed = positive("speed of contact", speed)?;
@@ -95,7 +104,8 @@ impl HuntCrossley {
             });
         }
         let (m, inverse) = (exponent + 1.0, 1.0 / (exponent + 1.0));
-        let undamped = (0.5 * m).powf(inverse) * speed.powf(2.0 * inverse) * stiffness.powf(-inverse);
+        let undamped =
+            (0.5 * m).powf(inverse) * speed.powf(2.0 * inverse) * stiffness.powf(-inverse);
         let depth = in_range("depth", undamped * (1.0 + excess(x)).powf(inverse))?;
         let loss = loss(x);
         let motion = Motion {
@@ -174,7 +184,10 @@ impl HuntCrossley {
             let (phi, _) = invert(&self.turning, time - length(&self.loading));
             (phi.sin().powf(2.0 / m), phi.cos())
         };
-        (self.depth * part, self.speed * self.motion().speed_ratio(sigma))
+        (
+            self.depth * part,
+            self.speed * self.motion().speed_ratio(sigma),
+        )
     }
 
     /// The depth at a time since touch, in the unit of x.
@@ -187,7 +200,8 @@ impl HuntCrossley {
         self.at(time).1
     }
 
-    /// Velocity and force, per unit of mass, at a depth on the way in; beyond the greatest depth those of it.
+    /// Velocity and force, per unit of mass, at a depth on the way in; beyond the greatest depth
+    /// those of it.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -203,7 +217,8 @@ impl HuntCrossley {
         self.at_depth(depth, 1.0)
     }
 
-    /// Velocity and force, per unit of mass, at a depth on the way out; beyond the greatest depth those of it.
+    /// Velocity and force, per unit of mass, at a depth on the way out; beyond the greatest depth
+    /// those of it.
     pub fn unloading(&self, depth: f64) -> (f64, f64) {
         self.at_depth(depth, -1.0)
     }
@@ -213,7 +228,8 @@ impl HuntCrossley {
         let ratio = self
             .motion()
             .speed_ratio(sign * remaining(depth / self.depth, self.exponent + 1.0));
-        let force = self.stiffness * depth.powf(self.exponent) * (1.0 + self.damping * self.speed * ratio);
+        let force =
+            self.stiffness * depth.powf(self.exponent) * (1.0 + self.damping * self.speed * ratio);
         (self.speed * ratio, force)
     }
 
@@ -245,7 +261,8 @@ pub fn restitution(damping_times_speed: f64) -> Result<f64, ContactError> {
     Ok(restitution_of(x, loss(x)))
 }
 
-/// The product lambda v of damping and speed of touch at which a contact has this coefficient of restitution.
+/// The product lambda v of damping and speed of touch at which a contact has this coefficient of
+/// restitution.
 ///
 /// # Errors
 /// [`ContactError::Restitution`] for one that is not above 0 and at most 1.
@@ -281,7 +298,8 @@ const LARGEST: f64 = 1e150;
 
 /// psi(z) = 2 (z - ln(1 + z))/z^2 - 1 = -(2/3) z + (1/2) z^2 - (2/5) z^3 + .., for z > -1.
 ///
-/// With u = z/(2 + z), ln(1 + z) = 2 artanh u: psi = -u - u (1 - u)^2 (1/3 + u^2/5 + u^4/7 + ..), nothing of which cancels.
+/// With u = z/(2 + z), ln(1 + z) = 2 artanh u: psi = -u - u (1 - u)^2 (1/3 + u^2/5 + u^4/7 + ..),
+/// nothing of which cancels.
 pub(in crate::impact) fn excess(z: f64) -> f64 {
     let u = z / (2.0 + z);
     if u.abs() > 1.0 / 3.0 {
@@ -289,7 +307,9 @@ pub(in crate::impact) fn excess(z: f64) -> f64 {
     }
     // 9^-17 < 2^-53, and 100^-8.
     let terms = if u.abs() < 0.1 { 9 } else { 18 };
-    let series = (1..terms).rev().fold(0.0, |sum, k| sum * (u * u) + ODD_RECIPROCALS[k]);
+    let series = (1..terms)
+        .rev()
+        .fold(0.0, |sum, k| sum * (u * u) + ODD_RECIPROCALS[k]);
     -u - u * (1.0 - u) * (1.0 - u) * series
 }
 
@@ -309,8 +329,8 @@ fn signed_root(z: f64) -> f64 {
     z * (1.0 + excess(z)).max(0.0).sqrt()
 }
 
-/// 2 (G(-e x) - G(x))/x^2, the loss 1 - e beside e for its digits: it grows with e, at the rate 2 e/(1 - e x), and has its zero at the
-/// restitution.
+/// 2 (G(-e x) - G(x))/x^2, the loss 1 - e beside e for its digits: it grows with e, at the rate 2
+/// e/(1 - e x), and has its zero at the restitution.
 fn imbalance(x: f64, e: f64, loss: f64) -> f64 {
     e * e * excess(-e * x) - excess(x) - loss * (2.0 - loss)
 }
@@ -323,13 +343,15 @@ pub(in crate::impact) fn loss(x: f64) -> f64 {
     if x >= 1.0 {
         return 1.0 - restitution_of(x, 0.0);
     }
-    // Newton from e = 1/(1 + 2x/3 + 4x^3/135), which has the first three terms of the series and is good to 1 % at x = 1.
+    // Newton from e = 1/(1 + 2x/3 + 4x^3/135), which has the first three terms of the series and is
+    // good to 1 % at x = 1.
     let constant = excess(x);
     let excluded = x * (2.0 / 3.0 + 4.0 / 135.0 * x * x);
     let mut loss = excluded / (1.0 + excluded);
     for _ in 0..MOST_NEWTON {
         let e = 1.0 - loss;
-        let step = (e * e * excess(-e * x) - constant - loss * (2.0 - loss)) * (1.0 - e * x) / (2.0 * e);
+        let step =
+            (e * e * excess(-e * x) - constant - loss * (2.0 - loss)) * (1.0 - e * x) / (2.0 * e);
         loss += step;
         // What is left is of the order of its square.
         if step * step <= 1e-17 * loss {
@@ -377,8 +399,8 @@ fn remaining(y: f64, m: f64) -> f64 {
     (-(m * y.ln()).exp_m1()).max(0.0).sqrt()
 }
 
-/// The greatest force of a contact, per unit of mass, as of [`HuntCrossley::new`] but without its motion in time; nothing for quantities
-/// outside their domains.
+/// The greatest force of a contact, per unit of mass, as of [`HuntCrossley::new`] but without its
+/// motion in time; nothing for quantities outside their domains.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -399,10 +421,12 @@ pub fn peak_force(exponent: f64, stiffness: f64, damping: f64, speed: f64) -> Op
     let depth = undamped * (1.0 + excess(x)).powf(inverse);
     let whole = signed_root(x);
     let (_, factor) = Motion { x, whole }.peak(exponent);
-    Some(0.5 * m * speed / depth * speed * (1.0 + excess(x)) * factor).filter(|force| force.is_finite())
+    Some(0.5 * m * speed / depth * speed * (1.0 + excess(x)) * factor)
+        .filter(|force| force.is_finite())
 }
 
-/// The motion in the phase plane: u/v as a function of sigma, the part of S(lambda v) that is left, with its sign.
+/// The motion in the phase plane: u/v as a function of sigma, the part of S(lambda v) that is left,
+/// with its sign.
 #[derive(Debug, Clone, Copy)]
 struct Motion {
     /// lambda v.
@@ -434,7 +458,8 @@ impl Motion {
         let m = n + 1.0;
         // The derivative of y^n (1 + z) vanishes where z = (m/2n) S^2 (1 - sigma^2).
         let late = |sigma: f64| {
-            self.x * self.speed_ratio(sigma) - 0.5 * m / n * self.whole * self.whole * (1.0 - sigma * sigma)
+            self.x * self.speed_ratio(sigma)
+                - 0.5 * m / n * self.whole * self.whole * (1.0 - sigma * sigma)
         };
         let sigma = if self.x == 0.0 {
             0.0
@@ -484,7 +509,11 @@ mod tests {
 
     #[test]
     fn restitution_of_the_literature_and_by_its_law() {
-        for (x, e) in [(0.1, 0.937_475_580), (0.3, 0.832_869_792), (1.0, 0.593_624_260)] {
+        for (x, e) in [
+            (0.1, 0.937_475_580),
+            (0.3, 0.832_869_792),
+            (1.0, 0.593_624_260),
+        ] {
             assert!((restitution(x).unwrap() - e).abs() < 6e-10, "{x}");
         }
         for power in -60..60 {
@@ -497,7 +526,10 @@ mod tests {
             }
             if x < 0.01 {
                 let series = 1.0 - 2.0 / 3.0 * x + 4.0 / 9.0 * x * x - 44.0 / 135.0 * x * x * x;
-                assert!((e - series).abs() < x.powi(4) + 1e-15, "{x}: {e} against {series}");
+                assert!(
+                    (e - series).abs() < x.powi(4) + 1e-15,
+                    "{x}: {e} against {series}"
+                );
                 assert!((loss(x) / x - 2.0 / 3.0 + 4.0 / 9.0 * x).abs() < x * x + 1e-14);
             }
             if x > 30.0 {
@@ -508,7 +540,10 @@ mod tests {
             if (1e-3..15.0).contains(&x) {
                 assert!((back / x - 1.0).abs() < 1e-11, "{x}: {back}");
             }
-            assert!((restitution(back).unwrap() - e).abs() < 1e-13 * e.max(x), "{x}: {back}");
+            assert!(
+                (restitution(back).unwrap() - e).abs() < 1e-13 * e.max(x),
+                "{x}: {back}"
+            );
         }
         // The linear law, to 1 % below 0.15 and no further.
         let linear = |x: f64| (1.0 - 2.0 / 3.0 * x) / restitution(x).unwrap() - 1.0;
@@ -592,7 +627,8 @@ mod tests {
                             (contact.position(state.t), contact.velocity(state.t)),
                             (depth, velocity)
                         );
-                        let force = stiffness * state.x.max(0.0).powf(exponent) * (1.0 + damping * state.v);
+                        let force =
+                            stiffness * state.x.max(0.0).powf(exponent) * (1.0 + damping * state.v);
                         peak = peak.max(force);
                         let depth = state.x.clamp(0.0, contact.depth);
                         let (_, by_depth) = if state.v > 0.0 {
@@ -600,7 +636,8 @@ mod tests {
                         } else {
                             contact.unloading(depth)
                         };
-                        // Near the greatest depth the velocity is the root of a small difference of depths.
+                        // Near the greatest depth the velocity is the root of a small difference of
+                        // depths.
                         assert!(
                             (by_depth - force).abs() < 1e-4 * contact.peak_force,
                             "{case} at {}: {by_depth}",
@@ -612,7 +649,10 @@ mod tests {
                         "{case}: peak {peak}"
                     );
                     let lost = 0.5 * speed * speed - 0.5 * path.end().v.powi(2);
-                    assert!((contact.energy_lost / lost - 1.0).abs() < 1e-7, "{case}: {lost}");
+                    assert!(
+                        (contact.energy_lost / lost - 1.0).abs() < 1e-7,
+                        "{case}: {lost}"
+                    );
                 }
             }
         }
@@ -622,11 +662,15 @@ mod tests {
     fn the_loop_of_force_and_depth_encloses_the_energy_lost() {
         for exponent in [1.0, 1.5, 3.0] {
             for e in RESTITUTIONS {
-                let contact = HuntCrossley::new(exponent, 1e4, damping_for(e).unwrap(), 1.0).unwrap();
+                let contact =
+                    HuntCrossley::new(exponent, 1e4, damping_for(e).unwrap(), 1.0).unwrap();
                 // d = D (1 - w^2): the forces are smooth in w there.
                 let area = |w: f64| {
                     let depth = contact.depth * (1.0 - w * w);
-                    (contact.loading(depth).1 - contact.unloading(depth).1) * 2.0 * w * contact.depth
+                    (contact.loading(depth).1 - contact.unloading(depth).1)
+                        * 2.0
+                        * w
+                        * contact.depth
                 };
                 let (enclosed, _) = integrate_smooth(area, 0.0, 1.0, 1e-10).unwrap();
                 assert!(
@@ -653,11 +697,17 @@ mod tests {
                 assert!((contact.peak_force / law.peak_force - 1.0).abs() < damping + 1e-13);
                 for part in 0..=20 {
                     let time = law.duration * f64::from(part) / 20.0;
-                    assert!((contact.position(time) - law.position(time)).abs() < (damping + 1e-12) * law.depth);
+                    assert!(
+                        (contact.position(time) - law.position(time)).abs()
+                            < (damping + 1e-12) * law.depth
+                    );
                 }
                 let lost = contact.energy_lost / (0.5 * 0.7 * 0.7);
                 let expected = 4.0 / 3.0 * damping * 0.7;
-                assert!((lost - expected).abs() <= 1e-7 * expected, "{lost} against {expected}");
+                assert!(
+                    (lost - expected).abs() <= 1e-7 * expected,
+                    "{lost} against {expected}"
+                );
             }
         }
     }
@@ -670,7 +720,9 @@ mod tests {
                 let contact = HuntCrossley::new(exponent, 1e4, x, 1.0).unwrap();
                 let s = signed_root(x);
                 let beta = spec_math::cephes64::beta(1.0 / m, 0.5);
-                let series = 2.0 * contact.depth * x / (m * s) * beta * (1.0 + m * s * s / (12.0 * (m + 2.0)));
+                let series = 2.0 * contact.depth * x / (m * s)
+                    * beta
+                    * (1.0 + m * s * s / (12.0 * (m + 2.0)));
                 (contact.duration / series - 1.0).abs()
             };
             let order = (missing(0.4) / missing(0.2)).log2();
@@ -711,7 +763,10 @@ mod tests {
             );
             assert!((impact.penetration / contact.depth - 1.0).abs() < 1e-4);
             let duration = impact.exit_time.unwrap() - impact.entry_time;
-            assert!((duration / contact.duration - 1.0).abs() < 2e-4, "{e}: {duration}");
+            assert!(
+                (duration / contact.duration - 1.0).abs() < 2e-4,
+                "{e}: {duration}"
+            );
         }
     }
 
@@ -730,7 +785,10 @@ mod tests {
                 HuntCrossley::new(1.5, 1.0, 1.0, bad),
                 Err(ContactError::NotPositive(_))
             ));
-            assert!(matches!(damping_for(bad), Err(ContactError::Restitution(_))));
+            assert!(matches!(
+                damping_for(bad),
+                Err(ContactError::Restitution(_))
+            ));
         }
         for bad in [-1.0, f64::NAN, f64::INFINITY] {
             assert!(matches!(

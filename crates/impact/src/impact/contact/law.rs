@@ -1,13 +1,16 @@
 //! Every law of a contact, by name, in one table: lines, perturbation, balances, power law, exact.
 //!
-//! In: a [`Touch`], the forces as closures and the speed. Out: by a [`ContactLaw`] a [`ContactMotion`], by all of them a
-//! [`comparison`] with the exact one. How each is computed stands in files of their own: the fitted lines in `line`, homotopy,
-//! iteration and the balances in `half_oscillation`, the power law and the exact contact in theirs.
+//! In: a [`Touch`], the forces as closures and the speed. Out: by a [`ContactLaw`] a
+//! [`ContactMotion`], by all of them a [`comparison`] with the exact one. How each is computed
+//! stands in files of their own: the fitted lines in `line`, homotopy, iteration and the balances
+//! in `half_oscillation`, the power law and the exact contact in theirs.
 //!
-//! `homotopy` of the first order, the first order of parameter expansion and of homotopy analysis, the variational and the
-//! Hamiltonian approach and the balance of one harmonic are one number here; `iteration` has the same Omega by A, but takes A from
-//! the speed of its own motion. `harmonic-balance` is the line of that name, over Hertz's depth. For the power law all errors are
-//! numbers that depend on n alone: those of the least-squares line of equation (15) are +1.6 % in T and 0 in D.
+//! `homotopy` of the first order, the first order of parameter expansion and of homotopy analysis,
+//! the variational and the Hamiltonian approach and the balance of one harmonic are one number
+//! here; `iteration` has the same Omega by A, but takes A from the speed of its own motion.
+//! `harmonic-balance` is the line of that name, over Hertz's depth. For the power law all errors
+//! are numbers that depend on n alone: those of the least-squares line of equation (15) are +1.6 %
+//! in T and 0 in D.
 
 use std::fmt;
 use std::str::FromStr;
@@ -18,7 +21,9 @@ use super::super::hertz::{self, DEFAULT_STIFFNESS, positive};
 use super::super::linearisation::{self, Rule};
 use super::half_oscillation::{HalfOscillation, Order};
 use super::line::LineContact;
-use super::{ContactError, CorrectedPowerLaw, ExactContact, PowerLaw, SineSeries, finite, in_range, within};
+use super::{
+    ContactError, CorrectedPowerLaw, ExactContact, PowerLaw, SineSeries, finite, in_range, within,
+};
 use crate::decimal::significant;
 
 /// How the motion in contact is computed. The names are those of tables and problem files.
@@ -151,13 +156,15 @@ impl Default for Touch<'_> {
 impl Touch<'_> {
     /// The whole force in contact at a depth, per unit of mass.
     pub fn force(&self, depth: f64) -> f64 {
-        (self.restoring_force)(self.barrier + depth) + self.stiffness * (self.elastic_force)(depth.max(0.0))
+        (self.restoring_force)(self.barrier + depth)
+            + self.stiffness * (self.elastic_force)(depth.max(0.0))
     }
 
     /// The contact by this law.
     ///
     /// # Errors
-    /// [`ContactError`]: a quantity outside its domain, a force that does not turn the motion back, a law that does not apply.
+    /// [`ContactError`]: a quantity outside its domain, a force that does not turn the motion back,
+    /// a law that does not apply.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -211,7 +218,11 @@ impl Touch<'_> {
 
     fn power_law(&self) -> Result<PowerLaw, ContactError> {
         let exponent = self.exponent.ok_or(ContactError::NoPowerLaw)?;
-        PowerLaw::new(exponent, self.stiffness * (self.elastic_force)(1.0), self.speed)
+        PowerLaw::new(
+            exponent,
+            self.stiffness * (self.elastic_force)(1.0),
+            self.speed,
+        )
     }
 
     /// The line of the rule over the depth that the elastic force alone allows, and what it drives.
@@ -283,7 +294,8 @@ impl ContactMotion {
         self.at(time).1
     }
 
-    /// The same motion as a parabola and sines within `tolerance` of D, as far as 64 of them do: elementary functions, whatever the law.
+    /// The same motion as a parabola and sines within `tolerance` of D, as far as 64 of them do:
+    /// elementary functions, whatever the law.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -312,9 +324,10 @@ impl ContactMotion {
         )
     }
 
-    /// The formula as people write it, so many significant digits: s is the time since touch. The exact motion is written as sines
-    /// that stay within `tolerance` of D, as far as 64 of them do; of the power law stands the time as a function of the depth, with I
-    /// the regularised incomplete beta function, for the way in.
+    /// The formula as people write it, so many significant digits: s is the time since touch. The
+    /// exact motion is written as sines that stay within `tolerance` of D, as far as 64 of them do;
+    /// of the power law stands the time as a function of the depth, with I the regularised
+    /// incomplete beta function, for the way in.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -331,12 +344,18 @@ impl ContactMotion {
         match &self.form {
             Form::Line(line) => {
                 let frequency = text(line.frequency);
-                let swing = format!("d(s) = {} sin({frequency} s)", text(line.speed / line.frequency));
+                let swing = format!(
+                    "d(s) = {} sin({frequency} s)",
+                    text(line.speed / line.frequency)
+                );
                 match line.centre {
                     0.0 => swing,
                     centre => {
                         let sign = if centre > 0.0 { '-' } else { '+' };
-                        format!("{swing} {sign} {} (1 - cos({frequency} s))", text(centre.abs()))
+                        format!(
+                            "{swing} {sign} {} (1 - cos({frequency} s))",
+                            text(centre.abs())
+                        )
                     }
                 }
             }
@@ -344,7 +363,11 @@ impl ContactMotion {
             Form::PowerLaw(contact) => {
                 let m = contact.exponent + 1.0;
                 let (half, depth) = (text(0.5 * contact.duration), text(contact.depth));
-                format!("s = {half} I(x; {}, 0.5), x = (d/{depth})^{}", text(1.0 / m), text(m))
+                format!(
+                    "s = {half} I(x; {}, 0.5), x = (d/{depth})^{}",
+                    text(1.0 / m),
+                    text(m)
+                )
             }
             Form::Corrected(contact) => contact.closed_form(digits),
             Form::Exact(contact) => contact.sine_series(tolerance).closed_form(digits),
@@ -376,7 +399,8 @@ pub struct ContactErrors {
     pub depth: f64,
     /// Of the greatest force, relative, signed.
     pub peak_force: f64,
-    /// The largest difference of depth at the same time since touch, relative to the greatest depth.
+    /// The largest difference of depth at the same time since touch, relative to the greatest
+    /// depth.
     pub motion: f64,
 }
 
@@ -450,7 +474,10 @@ mod tests {
     fn percent(exponent: f64, stiffness: f64, speed: f64, law: ContactLaw) -> (f64, f64) {
         let force = move |d: f64| d.powf(exponent);
         let touch = alone(exponent, &force, stiffness, speed);
-        let errors = touch.by(law).unwrap().errors(&touch.by(ContactLaw::Exact).unwrap());
+        let errors = touch
+            .by(law)
+            .unwrap()
+            .errors(&touch.by(ContactLaw::Exact).unwrap());
         (100.0 * errors.duration, 100.0 * errors.depth)
     }
 
@@ -481,7 +508,11 @@ mod tests {
                     "{law}: duration {}",
                     found.0
                 );
-                assert!((found.1 - depth).abs() < digit(depth), "{law}: depth {}", found.1);
+                assert!(
+                    (found.1 - depth).abs() < digit(depth),
+                    "{law}: depth {}",
+                    found.1
+                );
             }
         }
     }
@@ -490,7 +521,8 @@ mod tests {
     fn homotopy_and_iteration_of_a_power_by_gamma_functions() {
         // Omega^2 = gamma (2/sqrt(pi)) Gamma(n/2 + 1)/Gamma((n + 3)/2) A^(n - 1).
         for exponent in [1.0, 1.5, 2.0, 3.0_f64] {
-            let factor = 2.0 / PI.sqrt() * gamma(0.5 * exponent + 1.0) / gamma(0.5 * (exponent + 3.0));
+            let factor =
+                2.0 / PI.sqrt() * gamma(0.5 * exponent + 1.0) / gamma(0.5 * (exponent + 3.0));
             for (stiffness, speed) in [(1.0, 1e-6), (1e6, 1.0), (1e9, 10.0)] {
                 let force = move |d: f64| d.powf(exponent);
                 let touch = alone(exponent, &force, stiffness, speed);
@@ -505,26 +537,41 @@ mod tests {
                 let iterated = touch.by(ContactLaw::Iteration).unwrap();
                 let square = (PI / iterated.duration).powi(2);
                 let law = stiffness * factor * iterated.depth.powf(exponent - 1.0);
-                assert!((square / law - 1.0).abs() < 1e-12, "{exponent}: {square} against {law}");
+                assert!(
+                    (square / law - 1.0).abs() < 1e-12,
+                    "{exponent}: {square} against {law}"
+                );
             }
         }
-        // The cubic, to the last digit: s_3 = -A^3/4, x_1 = (A^3/32 Omega^2)(..), Omega^4 - (3/4) A^2 Omega^2 + (3/128) A^4 = 0.
+        // The cubic, to the last digit: s_3 = -A^3/4, x_1 = (A^3/32 Omega^2)(..), Omega^4 - (3/4)
+        // A^2 Omega^2 + (3/128) A^4 = 0.
         let cube = |d: f64| d.powi(3);
-        let motion = alone(3.0, &cube, 1.0, 1.0).by(ContactLaw::SecondHomotopy).unwrap();
+        let motion = alone(3.0, &cube, 1.0, 1.0)
+            .by(ContactLaw::SecondHomotopy)
+            .unwrap();
         let square = (PI / motion.duration).powi(2) / (motion.depth * motion.depth);
         let expected = 0.5 * (0.75 + f64::sqrt(0.75 * 0.75 - 4.0 * 3.0 / 128.0));
-        assert!((square / expected - 1.0).abs() < 1e-7, "{square} against {expected}");
+        assert!(
+            (square / expected - 1.0).abs() < 1e-7,
+            "{square} against {expected}"
+        );
     }
 
     #[test]
     fn the_balance_of_two_harmonics_of_a_cube_is_that_of_its_equations() {
         let cube = |d: f64| d.powi(3);
-        let motion = alone(3.0, &cube, 1.0, 1.0).by(ContactLaw::TwoHarmonics).unwrap();
+        let motion = alone(3.0, &cube, 1.0, 1.0)
+            .by(ContactLaw::TwoHarmonics)
+            .unwrap();
         let Form::Sines(sines) = &motion.form else {
             panic!("sines")
         };
         // The cosines of the literature, cos 3 theta = -sin 3 phi.
-        let (a1, a3, square) = (sines.harmonics[0], -sines.harmonics[1], (PI / sines.duration).powi(2));
+        let (a1, a3, square) = (
+            sines.harmonics[0],
+            -sines.harmonics[1],
+            (PI / sines.duration).powi(2),
+        );
         let first = -square * a1 + 0.75 * a1.powi(3) + 0.75 * a1 * a1 * a3 + 1.5 * a1 * a3 * a3;
         let third = -9.0 * square * a3 + 0.25 * a1.powi(3) + 1.5 * a1 * a1 * a3 + 0.75 * a3.powi(3);
         assert!(first.abs() < 1e-9 && third.abs() < 1e-9, "{first} {third}");
@@ -543,7 +590,10 @@ mod tests {
                 error(ContactLaw::TwoHarmonics),
                 error(ContactLaw::ThreeHarmonics),
             );
-            assert!(two < 0.3 * one && three < 0.5 * two, "{exponent}: {one} {two} {three}");
+            assert!(
+                two < 0.3 * one && three < 0.5 * two,
+                "{exponent}: {one} {two} {three}"
+            );
             assert!(
                 error(ContactLaw::Iteration) < one && error(ContactLaw::SecondHomotopy) < one,
                 "{exponent}"
@@ -579,7 +629,8 @@ mod tests {
         for row in rows {
             let (motion, errors) = row.outcome.unwrap();
             let law = row.law;
-            let [start, middle, end] = [0.0, 0.5, 1.0].map(|part| motion.at(part * motion.duration));
+            let [start, middle, end] =
+                [0.0, 0.5, 1.0].map(|part| motion.at(part * motion.duration));
             assert!(
                 start.0.abs() < 1e-12 && end.0.abs() < 1e-12 * motion.depth.max(1.0),
                 "{law}: {start:?} {end:?}"
@@ -588,14 +639,20 @@ mod tests {
                 (start.1 + end.1).abs() < 1e-9 && middle.1.abs() < 1e-9,
                 "{law}: {start:?} {middle:?} {end:?}"
             );
-            assert!((middle.0 / motion.depth - 1.0).abs() < 1e-9, "{law}: {middle:?}");
+            assert!(
+                (middle.0 / motion.depth - 1.0).abs() < 1e-9,
+                "{law}: {middle:?}"
+            );
             assert!((motion.position(0.1), motion.velocity(0.1)) == motion.at(0.1));
             let known = matches!(law, ContactLaw::CorrectedPowerLaw);
             assert!(
                 (start.1 / touch.speed - 1.0).abs() < if known { 1e-2 } else { 1e-9 },
                 "{law}: {start:?}"
             );
-            assert!(errors.motion < 0.25 && errors.duration.abs() < 0.1, "{law}: {errors:?}");
+            assert!(
+                errors.motion < 0.25 && errors.duration.abs() < 0.1,
+                "{law}: {errors:?}"
+            );
         }
         let corrected = touch.by(ContactLaw::CorrectedPowerLaw).unwrap();
         let (exact, plain) = (
@@ -603,7 +660,10 @@ mod tests {
             touch.by(ContactLaw::PowerLaw).unwrap(),
         );
         let (with, without) = (corrected.errors(&exact), plain.errors(&exact));
-        assert!(with.duration.abs() < 1e-2 * without.duration.abs() && with.depth.abs() < 1e-2 * without.depth.abs());
+        assert!(
+            with.duration.abs() < 1e-2 * without.duration.abs()
+                && with.depth.abs() < 1e-2 * without.depth.abs()
+        );
     }
 
     #[test]
@@ -632,7 +692,11 @@ mod tests {
                         );
                     }
                     Err(error) => {
-                        assert!(error.to_string().contains("exact contact"), "{}: {error}", row.law);
+                        assert!(
+                            error.to_string().contains("exact contact"),
+                            "{}: {error}",
+                            row.law
+                        );
                         assert!(row.law != ContactLaw::Exact);
                     }
                 }
@@ -659,12 +723,20 @@ mod tests {
                 ContactLaw::PowerLaw | ContactLaw::CorrectedPowerLaw => 0,
             };
             assert_eq!(waves, expected, "{}: {formula}", row.law);
-            assert!(!formula.contains("NaN") && formula.contains("s"), "{formula}");
+            assert!(
+                !formula.contains("NaN") && formula.contains("s"),
+                "{formula}"
+            );
         }
         let line = touch.by(ContactLaw::Line(Rule::LeastSquares)).unwrap();
-        let Form::Line(turn) = &line.form else { panic!("a line") };
+        let Form::Line(turn) = &line.form else {
+            panic!("a line")
+        };
         assert!(turn.centre < 0.0 && line.closed_form(5, 1e-3).contains(" + "));
-        let corrected = touch.by(ContactLaw::CorrectedPowerLaw).unwrap().closed_form(4, 1e-3);
+        let corrected = touch
+            .by(ContactLaw::CorrectedPowerLaw)
+            .unwrap()
+            .closed_form(4, 1e-3);
         assert!(
             corrected.starts_with("d(s) = 0.1587 s (0.0") && corrected.contains(" Y(s/0.0"),
             "{corrected}"
@@ -678,7 +750,9 @@ mod tests {
         }
         let unknown = "hertz".parse::<ContactLaw>().unwrap_err().to_string();
         assert!(
-            ContactLaw::ALL.into_iter().all(|law| unknown.contains(law.name())),
+            ContactLaw::ALL
+                .into_iter()
+                .all(|law| unknown.contains(law.name())),
             "{unknown}"
         );
         assert_eq!(ContactLaw::default(), ContactLaw::Exact);
@@ -738,7 +812,10 @@ mod tests {
             exponent: None,
             ..Touch::default()
         };
-        assert_eq!(unnamed.by(ContactLaw::PowerLaw), Err(ContactError::NoPowerLaw));
+        assert_eq!(
+            unnamed.by(ContactLaw::PowerLaw),
+            Err(ContactError::NoPowerLaw)
+        );
         assert!(unnamed.by(ContactLaw::Exact).is_ok());
     }
 

@@ -1,6 +1,7 @@
 //! A contact under a line, equation (15): a spring and a constant force.
 //!
-//! In: the square of its frequency, the force at touch and the speed. Out: a [`LineContact`]: depth, duration, motion.
+//! In: the square of its frequency, the force at touch and the speed. Out: a [`LineContact`]:
+//! depth, duration, motion.
 //!
 //! ```text
 //! d'' + b + w^2 d = 0,  d(0) = 0, d'(0) = v               T = (2/w) atan2(v/w, b/w^2)
@@ -21,8 +22,8 @@ pub(in crate::impact) struct LineContact {
 }
 
 impl LineContact {
-    /// What the line drives, per unit of this stiffness, beside a force `at_barrier` that grows with `slope`; `None` where that does
-    /// not oscillate.
+    /// What the line drives, per unit of this stiffness, beside a force `at_barrier` that grows
+    /// with `slope`; `None` where that does not oscillate.
     pub(in crate::impact) fn new(
         line: Line,
         stiffness: f64,
@@ -61,6 +62,9 @@ impl LineContact {
         let (sine, cosine) = (0.5 * self.frequency * time).sin_cos();
         let depth = 2.0 * sine * (swing * cosine - self.centre * sine);
         let (sine, cosine) = (self.frequency * time).sin_cos();
-        (depth, self.speed * cosine - self.centre * self.frequency * sine)
+        (
+            depth,
+            self.speed * cosine - self.centre * self.frequency * sine,
+        )
     }
 }

@@ -6,18 +6,22 @@
 //! F(d) = d^n                        n = 3/2 for Hertz, 1 for a spring, 2 for a cone
 //! ```
 //!
-//! In: gamma, v, the exponent or the force as a closure, a and k. Out: depth D, duration T, peak force, the motion. Each file uses
-//! only those above it:
+//! In: gamma, v, the exponent or the force as a closure, a and k. Out: depth D, duration T, peak
+//! force, the motion. Each file uses only those above it:
 //!
-//! - [`power_law`]: a = k = 0, by Gamma and incomplete beta functions; a and k as corrections in powers of them.
+//! - [`power_law`]: a = k = 0, by Gamma and incomplete beta functions; a and k as corrections in
+//!   powers of them.
 //! - `time`: the time along a motion whose speed is known at every place, and back.
-//! - [`exact`]: any force as a closure, by energy and quadrature; the motion as a short series of sines.
-//! - [`hunt_crossley`]: a contact that loses energy, gamma d^n (1 + lambda d'): restitution, loop of force and depth, duration.
+//! - [`exact`]: any force as a closure, by energy and quadrature; the motion as a short series of
+//!   sines.
+//! - [`hunt_crossley`]: a contact that loses energy, gamma d^n (1 + lambda d'): restitution, loop
+//!   of force and depth, duration.
 //! - `line`: a line in place of the force, equation (15), which the paper's phases use as well.
 //! - `half_oscillation`: homotopy, iteration and the balance of harmonics.
 //! - [`law`]: all laws by name, beside the exact one: [`comparison`].
 //!
-//! Depths are in the unit of x, rad for the pendulum, times in units of 1/omega, forces per unit of mass: accelerations, rad omega^2.
+//! Depths are in the unit of x, rad for the pendulum, times in units of 1/omega, forces per unit of
+//! mass: accelerations, rad omega^2.
 
 use thiserror::Error;
 
@@ -37,7 +41,9 @@ mod time;
 
 pub use exact::{ExactContact, SineSeries};
 pub use hunt_crossley::HuntCrossley;
-pub use law::{ContactErrors, ContactLaw, ContactMotion, ContactRow, Touch, UnknownContactLaw, comparison};
+pub use law::{
+    ContactErrors, ContactLaw, ContactMotion, ContactRow, Touch, UnknownContactLaw, comparison,
+};
 pub use power_law::{CorrectedPowerLaw, PowerLaw};
 
 /// Why there is no contact to speak of.
@@ -64,10 +70,14 @@ pub enum ContactError {
         quantity: &'static str,
     },
     /// A restitution outside its range.
-    #[error("the coefficient of restitution must lie above 0 and be at most 1, not {0}: 1 is a contact without loss")]
+    #[error(
+        "the coefficient of restitution must lie above 0 and be at most 1, not {0}: 1 is a contact without loss"
+    )]
     Restitution(f64),
     /// A damping below zero.
-    #[error("the {quantity} must be a number and not negative, not {value}: 0 is a contact without loss")]
+    #[error(
+        "the {quantity} must be a number and not negative, not {value}: 0 is a contact without loss"
+    )]
     Negative {
         /// What it is.
         quantity: &'static str,
@@ -105,7 +115,9 @@ pub enum ContactError {
         searched: f64,
     },
     /// The force has corners, jumps or waves on the way.
-    #[error("the force in contact is not smooth enough for its motion to be computed: integrate it step by step")]
+    #[error(
+        "the force in contact is not smooth enough for its motion to be computed: integrate it step by step"
+    )]
     NotSmooth,
     /// A damping that changes the speed too fast for the panels that resolve it.
     #[error(
@@ -153,21 +165,28 @@ fn in_range(quantity: &'static str, value: f64) -> Result<f64, ContactError> {
     }
 }
 
-/// A time of the contact: before it the touch, which is that of no number too, after it the release.
+/// A time of the contact: before it the touch, which is that of no number too, after it the
+/// release.
 fn within(time: f64, duration: f64) -> f64 {
     if time > 0.0 { time.min(duration) } else { 0.0 }
 }
 
-/// Runge-Kutta on d'' = -force(d, d') from the touch to the release, or for this time: what the laws are held to. Its first event is
-/// the deepest point.
+/// Runge-Kutta on d'' = -force(d, d') from the touch to the release, or for this time: what the
+/// laws are held to. Its first event is the deepest point.
 #[cfg(test)]
-fn by_runge_kutta(force: impl Fn(f64, f64) -> f64, [speed, depth, time]: [f64; 3]) -> crate::numeric::ode::Trajectory {
+fn by_runge_kutta(
+    force: impl Fn(f64, f64) -> f64,
+    [speed, depth, time]: [f64; 3],
+) -> crate::numeric::ode::Trajectory {
     use crate::numeric::ode::{Event, Options, State, integrate};
     let options = Options {
         absolute_tolerance: 1e-14 * depth,
         ..Options::with_tolerance(1e-13)
     };
-    let events = [Event::record(|_, _, v| v), Event::stop(|_, d, _| d).falling()];
+    let events = [
+        Event::record(|_, _, v| v),
+        Event::stop(|_, d, _| d).falling(),
+    ];
     let start = State {
         t: 0.0,
         x: 0.0,
@@ -193,12 +212,20 @@ mod tests {
 
     fn assert_table(header: &str, rows: &[String]) {
         let computed = rows.join("\n");
-        assert_eq!(table(header).join("\n"), computed, "under {header}:\n{computed}\n");
+        assert_eq!(
+            table(header).join("\n"),
+            computed,
+            "under {header}:\n{computed}\n"
+        );
     }
 
     fn percent(part: f64) -> String {
         let text = format!("{:+.4}", 100.0 * part);
-        if text.ends_with("0.0000") { "0".to_owned() } else { text }
+        if text.ends_with("0.0000") {
+            "0".to_owned()
+        } else {
+            text
+        }
     }
 
     fn row(cells: impl IntoIterator<Item = String>) -> String {
@@ -207,7 +234,11 @@ mod tests {
 
     #[test]
     fn the_numbers_of_the_power_law_are_those_of_the_page() {
-        let numbers = [("Hertz", "3/2", 1.5), ("cone", "2", 2.0), ("cube", "3", 3.0)];
+        let numbers = [
+            ("Hertz", "3/2", 1.5),
+            ("cone", "2", 2.0),
+            ("cube", "3", 3.0),
+        ];
         for (force, name, exponent) in numbers {
             let line = row([
                 force.to_owned(),
@@ -229,7 +260,8 @@ mod tests {
             let exact = touch.by(ContactLaw::Exact).unwrap();
             let plain = PowerLaw::new(1.5, stiffness, touch.speed).unwrap();
             let preload = touch.barrier.sin();
-            let [first, second] = [1, 2].map(|order| plain.corrected(preload, touch.slope, order).unwrap());
+            let [first, second] =
+                [1, 2].map(|order| plain.corrected(preload, touch.slope, order).unwrap());
             let error = |duration: f64| percent(duration / exact.duration - 1.0);
             row([
                 format!("{stiffness:.0e}"),
@@ -260,7 +292,11 @@ mod tests {
             let contact = ExactContact::new(|d| touch.force(d), speed).unwrap();
             let (coarse, fine) = (contact.sine_series(1e-3), contact.sine_series(1e-6));
             row([
-                format!("gamma {}, v = {}", significant(stiffness, 3), significant(speed, 5)),
+                format!(
+                    "gamma {}, v = {}",
+                    significant(stiffness, 3),
+                    significant(speed, 5)
+                ),
                 coarse.harmonics.len().to_string(),
                 fine.harmonics.len().to_string(),
                 format!("{:.1e}", fine.deviation),
@@ -297,9 +333,11 @@ mod tests {
         let rows = [0.99, 0.9, 0.7, 0.5, 0.3, 0.1].map(|e: f64| {
             let rules = [1.5 * (1.0 - e), 0.75 * (1.0 - e * e), 1.6 * (1.0 - e) / e];
             let reached = rules.map(|x| format!("{:.4}", restitution(x).unwrap()));
-            row([significant(e, 2), format!("{:.5}", damping_for(e).unwrap())]
-                .into_iter()
-                .chain(reached))
+            row(
+                [significant(e, 2), format!("{:.5}", damping_for(e).unwrap())]
+                    .into_iter()
+                    .chain(reached),
+            )
         });
         assert_table(
             "| e wanted | lambda v | Hunt-Crossley | Lankarani-Nikravesh | Flores |",

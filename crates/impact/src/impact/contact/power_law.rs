@@ -1,7 +1,8 @@
 //! The contact of a power law, in closed form: d'' = -gamma d^n.
 //!
-//! References: H. Hertz, *J. reine angew. Math.* 92 (1881) 156, for n = 3/2; W. Goldsmith, *Impact*, 1960, section 4.2; K. L.
-//! Johnson, *Contact Mechanics*, 1985, section 11.4. With m = n + 1, B the beta function and I the regularised incomplete one,
+//! References: H. Hertz, *J. reine angew. Math.* 92 (1881) 156, for n = 3/2; W.
+//! Goldsmith, *Impact*, 1960, section 4.2; K. L. Johnson, *Contact Mechanics*, 1985, section 11.4. With m =
+//! n + 1, B the beta function and I the regularised incomplete one,
 //!
 //! ```text
 //! D = (m v^2/(2 gamma))^(1/m)                     T = (2 D/(m v)) B(1/m, 1/2),   B(1/m, 1/2) = sqrt(pi) Gamma(1/m)/Gamma(1/m + 1/2)
@@ -9,17 +10,20 @@
 //! s = (T/2) I_x(1/m, 1/2),   x = (d/D)^m,         d' = v sqrt(1 - x)            for the rise; the fall is its mirror image
 //! ```
 //!
-//! Near the deepest point x is 1 but for little, and the complement is solved instead: `1 - 2 s/T = I_z(1/2, 1/m)`, z = (d'/v)^2.
+//! Near the deepest point x is 1 but for little, and the complement is solved instead:
+//! `1 - 2 s/T = I_z(1/2, 1/m)`, z = (d'/v)^2.
 //!
-//! With a force a at touch and a slope k beside the contact, d'' + a + k d + gamma d^n = 0, the energy gives, exactly,
+//! With a force a at touch and a slope k beside the contact, d'' + a + k d + gamma d^n = 0, the
+//! energy gives, exactly,
 //!
 //! ```text
 //! 1 = E1 r + E2 r^2 + r^m,   r = D/D0,            E1 = 2 a D0/v^2,  E2 = k D0^2/v^2,  D0 the depth above
 //! T = (2 D/v) int_0^1 dy / sqrt(1 - y^m - e1 (y - y^m) - e2 (y^2 - y^m)),     e1 = 2 a D/v^2,  e2 = k D^2/v^2
 //! ```
 //!
-//! and both in powers of a and k have coefficients in closed form, the first by Lagrange's inversion, the second by the binomial
-//! series, every integral of which is a beta function, continued analytically where it diverges by itself:
+//! and both in powers of a and k have coefficients in closed form, the first by Lagrange's
+//! inversion, the second by the binomial series, every integral of which is a beta function,
+//! continued analytically where it diverges by itself:
 //!
 //! ```text
 //! r = sum_(p,q) (-E1)^p (-E2)^q / (p! q!) (1/m) (alpha - 1) .. (alpha - p - q + 1),            alpha = (1 + p + 2 q)/m
@@ -27,8 +31,9 @@
 //!                                                                beta = (1 + p - i + 2 (q - j))/m + i + j
 //! ```
 //!
-//! The series of T converges for |e1| < m/n, that is 5/3 for Hertz, where e1 = 1 is a contact of which the force at touch alone
-//! takes up the whole energy; those of r for a little less. Of a soft barrier or a slow touch ask the exact contact.
+//! The series of T converges for |e1| < m/n, that is 5/3 for Hertz, where e1 = 1 is a contact of
+//! which the force at touch alone takes up the whole energy; those of r for a little less. Of a
+//! soft barrier or a slow touch ask the exact contact.
 
 use std::f64::consts::PI;
 
@@ -39,7 +44,8 @@ use super::{ContactError, finite, in_range, within};
 use crate::decimal::significant;
 use crate::numeric::ode::root::find_root;
 
-/// One contact by d'' = -gamma d^n, entered with speed v. Made by [`PowerLaw::new`], so that all fields belong together.
+/// One contact by d'' = -gamma d^n, entered with speed v. Made by [`PowerLaw::new`], so that all
+/// fields belong together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct PowerLaw {
@@ -70,7 +76,8 @@ impl PowerLaw {
     /// The contact of this exponent and this stiffness gamma, touched at this speed.
     ///
     /// # Errors
-    /// [`ContactError`]: a quantity that is no positive number, a depth or a duration beyond double precision.
+    /// [`ContactError`]: a quantity that is no positive number, a depth or a duration beyond double
+    /// precision.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -122,12 +129,12 @@ impl PowerLaw {
         self.at(time).1
     }
 
-    /// The same contact with a force `preload` (a, either sign) at touch and of slope `slope` (k) beside it, to this order in both
-    /// together, at most [`HIGHEST_ORDER`].
+    /// The same contact with a force `preload` (a, either sign) at touch and of slope `slope` (k)
+    /// beside it, to this order in both together, at most [`HIGHEST_ORDER`].
     ///
     /// # Errors
-    /// [`ContactError::NoCorrection`] where the terms left out may be half of the depth or of the duration;
-    /// [`ContactError`] for numbers that are none and for an order that there is not.
+    /// [`ContactError::NoCorrection`] where the terms left out may be half of the depth or of the
+    /// duration; [`ContactError`] for numbers that are none and for an order that there is not.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -141,8 +148,16 @@ impl PowerLaw {
     /// assert!(PowerLaw::new(1.5, 1.0, 0.01)?.corrected(0.3, 0.9, 2).is_err()); // a push, no impact
     /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
     /// ```
-    pub fn corrected(&self, preload: f64, slope: f64, order: u32) -> Result<CorrectedPowerLaw, ContactError> {
-        let (preload, slope) = (finite("force at touch", preload)?, finite("slope of the force", slope)?);
+    pub fn corrected(
+        &self,
+        preload: f64,
+        slope: f64,
+        order: u32,
+    ) -> Result<CorrectedPowerLaw, ContactError> {
+        let (preload, slope) = (
+            finite("force at touch", preload)?,
+            finite("slope of the force", slope)?,
+        );
         if !(1..=HIGHEST_ORDER).contains(&order) {
             return Err(ContactError::Order {
                 order,
@@ -153,10 +168,14 @@ impl PowerLaw {
         let by_preload = 2.0 * preload / self.speed * scale;
         let by_slope = slope * scale * scale;
         let m = self.exponent + 1.0;
-        let (ratio, depth_error) = double_series(order, [-by_preload, -by_slope], |p, q| depth_coefficient(m, p, q));
+        let (ratio, depth_error) = double_series(order, [-by_preload, -by_slope], |p, q| {
+            depth_coefficient(m, p, q)
+        });
         let whole = duration_coefficient(m, 0, 0);
         let at_depth = [by_preload * ratio, by_slope * ratio * ratio];
-        let (factor, duration_error) = double_series(order, at_depth, |p, q| duration_coefficient(m, p, q) / whole);
+        let (factor, duration_error) = double_series(order, at_depth, |p, q| {
+            duration_coefficient(m, p, q) / whole
+        });
         let corrected = CorrectedPowerLaw {
             contact: *self,
             preload,
@@ -168,7 +187,11 @@ impl PowerLaw {
             duration_error: duration_error / factor + depth_error / ratio,
         };
         let small = |error: f64| (0.0..0.5).contains(&error);
-        if !(ratio > 0.0 && factor > 0.0 && small(corrected.depth_error) && small(corrected.duration_error)) {
+        if !(ratio > 0.0
+            && factor > 0.0
+            && small(corrected.depth_error)
+            && small(corrected.duration_error))
+        {
             return Err(ContactError::NoCorrection {
                 depth_error: corrected.depth_error.abs(),
                 duration_error: corrected.duration_error.abs(),
@@ -185,15 +208,15 @@ pub const HIGHEST_ORDER: u32 = 6;
 
 /// A [`PowerLaw`] corrected for the force at touch and its slope. Made by [`PowerLaw::corrected`].
 ///
-/// Depth and duration are those of the series above. The motion is the parabola that the force at touch alone would drive, and the
-/// rest of the depth in the shape of the power law:
+/// Depth and duration are those of the series above. The motion is the parabola that the force at
+/// touch alone would drive, and the rest of the depth in the shape of the power law:
 ///
 /// ```text
 /// d(s) = (a/2) s (T - s) + (D - a T^2/8) Y(s/T),       Y the motion of the power law, of unit depth and duration
 /// ```
 ///
-/// D, T and the acceleration at touch are right in it, the speed of touch to the first order or so: how far it is from the exact
-/// motion is [`CorrectedPowerLaw::shape_error`].
+/// D, T and the acceleration at touch are right in it, the speed of touch to the first order or so:
+/// how far it is from the exact motion is [`CorrectedPowerLaw::shape_error`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct CorrectedPowerLaw {
@@ -250,7 +273,8 @@ impl CorrectedPowerLaw {
         self.at(time).1
     }
 
-    /// The formula as people write it, so many significant digits: s is the time since touch, Y the motion of the power law.
+    /// The formula as people write it, so many significant digits: s is the time since touch, Y the
+    /// motion of the power law.
     pub fn closed_form(&self, digits: usize) -> String {
         let duration = significant(self.duration, digits);
         let rest = self.depth - 0.125 * self.preload * self.duration * self.duration;
@@ -264,8 +288,9 @@ impl CorrectedPowerLaw {
         )
     }
 
-    /// By how much the motion misses the speed of touch, relative to it: a measure of how far its shape is from the true one, whose
-    /// depth differs by less than that times D (as long as |a| D < v^2/10).
+    /// By how much the motion misses the speed of touch, relative to it: a measure of how far its
+    /// shape is from the true one, whose depth differs by less than that times D (as long as |a| D
+    /// < v^2/10).
     pub fn shape_error(&self) -> f64 {
         (self.velocity(0.0) / self.contact.speed - 1.0).abs()
     }
@@ -277,7 +302,8 @@ fn greatest_depth(exponent: f64, stiffness: f64, speed: f64) -> f64 {
     (0.5 * (exponent + 1.0)).powf(inverse) * speed.powf(2.0 * inverse) * stiffness.powf(-inverse)
 }
 
-/// n, where this force is d^n but for a factor, as far as doubles tell at depths from 1e-9 to 4; else nothing.
+/// n, where this force is d^n but for a factor, as far as doubles tell at depths from 1e-9 to 4;
+/// else nothing.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -303,13 +329,15 @@ pub fn exponent_of(force: impl Fn(f64) -> f64) -> Option<f64> {
     (unit > 0.0 && exponent.is_finite() && (-30..=2).step_by(4).all(is_power)).then_some(exponent)
 }
 
-/// The number T v/D of the power law, (2/m) B(1/m, 1/2): 2.9432751843247 for Hertz, pi for a spring, 4 for a constant force.
+/// The number T v/D of the power law, (2/m) B(1/m, 1/2): 2.9432751843247 for Hertz, pi for a
+/// spring, 4 for a constant force.
 pub fn duration_factor(exponent: f64) -> f64 {
     let inverse = 1.0 / (exponent + 1.0);
     2.0 * inverse * beta(inverse, 0.5)
 }
 
-/// The motion of the power law in its own units: d/D and d'/v at a part of the duration between 0 and 1.
+/// The motion of the power law in its own units: d/D and d'/v at a part of the duration between 0
+/// and 1.
 pub fn pulse(exponent: f64, part: f64) -> (f64, f64) {
     let part = within(part, 1.0);
     let (m, inverse) = (exponent + 1.0, 1.0 / (exponent + 1.0));
@@ -318,7 +346,8 @@ pub fn pulse(exponent: f64, part: f64) -> (f64, f64) {
     } else {
         (2.0 * (1.0 - part), -1.0)
     };
-    // Up to x = 1/2 the depth is the unknown, from there on the velocity: neither then is a difference of nearly equal numbers.
+    // Up to x = 1/2 the depth is the unknown, from there on the velocity: neither then is a
+    // difference of nearly equal numbers.
     let (depth, velocity) = if since <= incbet(inverse, 0.5, 0.5) {
         let linear = since * 0.5 * duration_factor(exponent);
         let late = |y: f64| incbet(inverse, 0.5, y.powf(m)) - since;
@@ -336,8 +365,9 @@ pub fn pulse(exponent: f64, part: f64) -> (f64, f64) {
     (depth, sign * velocity)
 }
 
-/// A series in two small quantities up to an order, and what may be missing in it: the terms of the last order by their sizes, or
-/// those before them times the square of the quantities where the last happen to vanish.
+/// A series in two small quantities up to an order, and what may be missing in it: the terms of the
+/// last order by their sizes, or those before them times the square of the quantities where the
+/// last happen to vanish.
 fn double_series(order: u32, small: [f64; 2], coefficient: impl Fn(i32, i32) -> f64) -> (f64, f64) {
     let order = order as i32;
     let (mut sum, mut last, mut before) = (0.0, 0.0, 0.0);
@@ -350,7 +380,10 @@ fn double_series(order: u32, small: [f64; 2], coefficient: impl Fn(i32, i32) -> 
             last += term.abs();
         }
     }
-    (sum, last.max(before * (small[0].abs() + small[1].abs()).powi(2)))
+    (
+        sum,
+        last.max(before * (small[0].abs() + small[1].abs()).powi(2)),
+    )
 }
 
 /// The coefficient of (-E1)^p (-E2)^q in D/D0.
@@ -378,7 +411,8 @@ fn duration_coefficient(m: f64, p: i32, q: i32) -> f64 {
     rising / (factorial(p) * factorial(q)) * sum / m
 }
 
-/// B(x, 1/2 - r) = Gamma(x) Gamma(1/2 - r) / Gamma(x + 1/2 - r) for x > 0 and a whole r, zero where the last has a pole.
+/// B(x, 1/2 - r) = Gamma(x) Gamma(1/2 - r) / Gamma(x + 1/2 - r) for x > 0 and a whole r, zero where
+/// the last has a pole.
 fn continued_beta(x: f64, r: i32) -> f64 {
     // Gamma(1/2 - r) = sqrt(pi) / ((-1/2)(-3/2) .. (1/2 - r)).
     let below = (0..r).map(|k| -0.5 - f64::from(k)).product::<f64>();
@@ -406,11 +440,17 @@ mod tests {
     const STIFFNESSES: [f64; 4] = [1.0, 1e3, 1e6, 1e9];
     const SPEEDS: [f64; 4] = [1e-6, 1e-3, 1.0, 10.0];
 
-    /// int_0^y dy/sqrt(1 - y^m) by quadrature: from the deepest point, y = 1 - w^2 with 1 - y^m in full precision.
+    /// int_0^y dy/sqrt(1 - y^m) by quadrature: from the deepest point, y = 1 - w^2 with 1 - y^m in
+    /// full precision.
     fn rise_time(m: f64, y: f64) -> f64 {
         let smooth = |w: f64| 2.0 * w / (-(m * (-w * w).ln_1p()).exp_m1()).sqrt();
-        // y = q^(1/..) is smooth at zero for whole powers only: the quadrature halves its panels there.
-        let whole = |from: f64| integrate_smooth(smooth, 0.0, (1.0 - from).sqrt(), 1e-14).unwrap().0;
+        // y = q^(1/..) is smooth at zero for whole powers only: the quadrature halves its panels
+        // there.
+        let whole = |from: f64| {
+            integrate_smooth(smooth, 0.0, (1.0 - from).sqrt(), 1e-14)
+                .unwrap()
+                .0
+        };
         whole(0.0) - whole(y)
     }
 
@@ -449,16 +489,33 @@ mod tests {
                         (stored / (0.5 * speed * speed) - 1.0).abs() < 1e-13,
                         "energy of {contact:?}"
                     );
-                    assert!((contact.peak_force / (stiffness * contact.depth.powf(exponent)) - 1.0).abs() < 1e-13);
-                    assert!((contact.duration * speed / contact.depth / factor - 1.0).abs() < 1e-12);
+                    assert!(
+                        (contact.peak_force / (stiffness * contact.depth.powf(exponent)) - 1.0)
+                            .abs()
+                            < 1e-13
+                    );
+                    assert!(
+                        (contact.duration * speed / contact.depth / factor - 1.0).abs() < 1e-12
+                    );
                     if exponent == 1.5 {
-                        assert!((contact.depth / hertz::penetration(stiffness, speed).unwrap() - 1.0).abs() < 1e-14);
-                        assert!((contact.duration / hertz::duration(stiffness, speed).unwrap() - 1.0).abs() < 1e-14);
+                        assert!(
+                            (contact.depth / hertz::penetration(stiffness, speed).unwrap() - 1.0)
+                                .abs()
+                                < 1e-14
+                        );
+                        assert!(
+                            (contact.duration / hertz::duration(stiffness, speed).unwrap() - 1.0)
+                                .abs()
+                                < 1e-14
+                        );
                     }
                 }
             }
         }
-        assert_eq!(PowerLaw::default(), PowerLaw::new(1.5, DEFAULT_STIFFNESS, 1.0).unwrap());
+        assert_eq!(
+            PowerLaw::default(),
+            PowerLaw::new(1.5, DEFAULT_STIFFNESS, 1.0).unwrap()
+        );
     }
 
     #[test]
@@ -466,10 +523,16 @@ mod tests {
         for index in 0..=1000 {
             let part = f64::from(index) / 1000.0;
             let (depth, velocity) = pulse(1.0, part);
-            assert!((depth - (PI * part).sin()).abs() < 1e-14 && (velocity - (PI * part).cos()).abs() < 1e-14);
+            assert!(
+                (depth - (PI * part).sin()).abs() < 1e-14
+                    && (velocity - (PI * part).cos()).abs() < 1e-14
+            );
             // y' ' = -(m/2) y^n in these units of time, with n towards 0: y = 1 - (1 - 2 part)^2.
             let (depth, velocity) = pulse(1e-9, part);
-            assert!((depth - 4.0 * part * (1.0 - part)).abs() < 1e-8 && (velocity - (1.0 - 2.0 * part)).abs() < 1e-8);
+            assert!(
+                (depth - 4.0 * part * (1.0 - part)).abs() < 1e-8
+                    && (velocity - (1.0 - 2.0 * part)).abs() < 1e-8
+            );
         }
     }
 
@@ -482,7 +545,8 @@ mod tests {
                 let part = 0.5 * rise_time(exponent + 1.0, y) / half;
                 let (depth, velocity) = pulse(exponent, part);
                 let expected = (-((exponent + 1.0) * y.ln()).exp_m1()).max(0.0).sqrt();
-                // At the deepest point an error of the time is squared in the depth, not in the velocity.
+                // At the deepest point an error of the time is squared in the depth, not in the
+                // velocity.
                 assert!((depth - y).abs() < 1e-12, "{exponent}, depth {y}: {depth}");
                 assert!(
                     (velocity - expected).abs() < 1e-12 * half,
@@ -508,7 +572,11 @@ mod tests {
                         "{contact:?} at {}",
                         state.t
                     );
-                    assert!((velocity - state.v).abs() < 1e-10 * speed, "{contact:?} at {}", state.t);
+                    assert!(
+                        (velocity - state.v).abs() < 1e-10 * speed,
+                        "{contact:?} at {}",
+                        state.t
+                    );
                     assert_eq!(contact.position(state.t), depth);
                     assert_eq!(contact.velocity(state.t), velocity);
                 }
@@ -550,14 +618,21 @@ mod tests {
         let (gamma, speed, a, k) = (1e4, 1.0, 3.0, 150.0);
         let w = f64::sqrt(gamma + k);
         let c = a / (w * w);
-        let (depth, duration) = ((c * c + (speed / w).powi(2)).sqrt() - c, 2.0 / w * (speed / w).atan2(c));
+        let (depth, duration) = (
+            (c * c + (speed / w).powi(2)).sqrt() - c,
+            2.0 / w * (speed / w).atan2(c),
+        );
         let contact = PowerLaw::new(1.0, gamma, speed).unwrap();
         let mut previous = f64::INFINITY;
         for order in 1..=HIGHEST_ORDER {
             let corrected = contact.corrected(a, k, order).unwrap();
-            let errors = [corrected.depth / depth - 1.0, corrected.duration / duration - 1.0];
+            let errors = [
+                corrected.depth / depth - 1.0,
+                corrected.duration / duration - 1.0,
+            ];
             assert!(
-                errors[0].abs() <= corrected.depth_error && errors[1].abs() <= corrected.duration_error,
+                errors[0].abs() <= corrected.depth_error
+                    && errors[1].abs() <= corrected.duration_error,
                 "{errors:?}"
             );
             let worst = errors[0].abs().max(errors[1].abs());
@@ -576,7 +651,10 @@ mod tests {
             for (preload, slope) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.3, -0.5)] {
                 for order in 1..=3_u32 {
                     let error = |part: f64| {
-                        let (a, k) = (part * preload * contact.speed * scale, part * slope * scale * scale);
+                        let (a, k) = (
+                            part * preload * contact.speed * scale,
+                            part * slope * scale * scale,
+                        );
                         let corrected = contact.corrected(a, k, order).unwrap();
                         let path = integrated(&contact, a, k);
                         let depth = corrected.depth / path.occurrences()[0].state.x - 1.0;
@@ -592,7 +670,9 @@ mod tests {
                         (depth, duration)
                     };
                     let (coarse, fine) = (error(0.04), error(0.02));
-                    for (name, coarse, fine) in [("depth", coarse.0, fine.0), ("duration", coarse.1, fine.1)] {
+                    for (name, coarse, fine) in
+                        [("depth", coarse.0, fine.0), ("duration", coarse.1, fine.1)]
+                    {
                         let slope_found = (coarse / fine).abs().log2();
                         let lowest = f64::from(order) + 0.8;
                         assert!(
@@ -672,7 +752,10 @@ mod tests {
         let refused = PowerLaw::new(0.01, 1e300, 1e-300).unwrap_err();
         assert_eq!(refused, ContactError::Range { quantity: "depth" });
         let refused = contact.corrected(1e9, 0.0, 2).unwrap_err();
-        assert!(refused.to_string().ends_with("take the exact contact"), "{refused}");
+        assert!(
+            refused.to_string().ends_with("take the exact contact"),
+            "{refused}"
+        );
     }
 
     fn wild() -> impl Strategy<Value = f64> {

@@ -1,7 +1,9 @@
-//! Time along a motion whose speed is known as a function of the place: t(z) = int_0^z rate(z) weight(z) dz, and back.
+//! Time along a motion whose speed is known as a function of the place: t(z) = int_0^z rate(z)
+//! weight(z) dz, and back.
 //!
-//! In: the rate, a smooth function, and the weight, as closures. Out: panels on each of which both are Legendre series, halved until the
-//! last of 20 coefficients vanish; the time is the integral term by term, `int P_k = (P_(k+1) - P_(k-1))/(2 k + 1)`.
+//! In: the rate, a smooth function, and the weight, as closures. Out: panels on each of which both
+//! are Legendre series, halved until the last of 20 coefficients vanish; the time is the integral
+//! term by term, `int P_k = (P_(k+1) - P_(k-1))/(2 k + 1)`.
 
 use super::ContactError;
 use crate::numeric::ode::quadrature::nodes_and_weights;
@@ -16,7 +18,8 @@ const RESOLVED: f64 = 1e-13;
 /// A motion that needs more pieces is not that of a smooth force.
 const MOST_PANELS: usize = 400;
 
-/// A smooth function on an interval as a Legendre series, and the time as the integral of it with a weight.
+/// A smooth function on an interval as a Legendre series, and the time as the integral of it with a
+/// weight.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Panel {
     pub(super) from: f64,
@@ -43,7 +46,8 @@ impl Panel {
     }
 }
 
-/// The function from `from` to `to` on as many panels as it needs, and the time, the integral of function times weight.
+/// The function from `from` to `to` on as many panels as it needs, and the time, the integral of
+/// function times weight.
 pub(super) fn expand(
     function: impl Fn(f64) -> Result<f64, ContactError>,
     weight: impl Fn(f64) -> f64,
@@ -61,7 +65,9 @@ pub(super) fn expand(
         let half = 0.5 * (to - from);
         let (function, rate) = (coefficients(&values), coefficients(&rates[..POINTS]));
         let resolved = |series: &[f64; POINTS]| {
-            let largest = series.iter().fold(0.0_f64, |largest, term| largest.max(term.abs()));
+            let largest = series
+                .iter()
+                .fold(0.0_f64, |largest, term| largest.max(term.abs()));
             series[POINTS - 2].abs() + series[POINTS - 1].abs() <= RESOLVED * largest
         };
         if !(resolved(&function) && resolved(&rate)) && to - from > 1e-15 * to {

@@ -1,6 +1,8 @@
-//! The effect of an arctangent in place of Coulomb's sgn on a pendulum: the laws at single speeds, and the swing near rest.
+//! The effect of an arctangent in place of Coulomb's sgn on a pendulum: the laws at single speeds,
+//! and the swing near rest.
 //!
-//! In: a [`FrictionSetup`]: how strong the friction is, and where the swing is released. Out: a [`FrictionStudy`]:
+//! In: a [`FrictionSetup`]: how strong the friction is, and where the swing is released. Out: a
+//! [`FrictionStudy`]:
 //!
 //! - `laws`: the arctangent beside sgn, speed by speed.
 //! - `near_rest`: where Coulomb's law stops the swing, and how the arctangent creeps on.
@@ -52,10 +54,14 @@ impl Default for FrictionSetup {
 #[non_exhaustive]
 pub enum FrictionError {
     /// A friction that is none, or that holds the pendulum everywhere.
-    #[error("alpha must lie above 0 and below 1, not {0}: at 1 friction holds the pendulum wherever it is")]
+    #[error(
+        "alpha must lie above 0 and below 1, not {0}: at 1 friction holds the pendulum wherever it is"
+    )]
     Alpha(f64),
     /// A release that is none.
-    #[error("the amplitude must lie above 0 and below pi, not {0}: the pendulum is released from rest at x = -A")]
+    #[error(
+        "the amplitude must lie above 0 and below pi, not {0}: the pendulum is released from rest at x = -A"
+    )]
     Amplitude(f64),
     /// A speed that is no number.
     #[error("a speed must be a finite number, not {0}")]

@@ -1,4 +1,5 @@
-//! A swing with friction, to rest: Coulomb's law stops it for good, the arctangent of equation (6) lets it creep.
+//! A swing with friction, to rest: Coulomb's law stops it for good, the arctangent of equation (6)
+//! lets it creep.
 //!
 //! ```text
 //! c     = alpha (2/pi) 100                                  the damping of equation (6) near rest, x'' + c x' + x = 0
@@ -8,8 +9,8 @@
 //! W/W_C = (sqrt(1 + k^2) - 1)/k                             the work of a harmonic swing of speed V = k/100 over Coulomb's
 //! ```
 //!
-//! The last is the average of averaging, (1/2) int_0^pi (2/pi) atan(k sin s) sin s ds. Every formula stands beside the number that
-//! the simulation of the whole equation gives.
+//! The last is the average of averaging, (1/2) int_0^pi (2/pi) atan(k sin s) sin s ds. Every
+//! formula stands beside the number that the simulation of the whole equation gives.
 
 use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
@@ -22,9 +23,11 @@ use crate::numeric::ode::{Options, Point, Trajectory, integrate_first_order};
 /// The first cycle by the arctangent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirstCycle {
-    /// When it ends, units of 1/omega: at the second turning point, or after 2 pi where there is none.
+    /// When it ends, units of 1/omega: at the second turning point, or after 2 pi where there is
+    /// none.
     pub until: f64,
-    /// The largest error of the force, as a fraction of alpha: all of it, where the motion turns back.
+    /// The largest error of the force, as a fraction of alpha: all of it, where the motion turns
+    /// back.
     pub largest_error: f64,
     /// The part of that time in which the force errs by more than 1 % of alpha.
     pub over_one_percent: f64,
@@ -68,7 +71,8 @@ pub struct Creep {
 }
 
 impl Creep {
-    /// The place by the formula of the creep, this long after rest, rad, up to the end of the motion; nothing where it swings.
+    /// The place by the formula of the creep, this long after rest, rad, up to the end of the
+    /// motion; nothing where it swings.
     pub fn formula(&self, t: f64) -> Option<f64> {
         self.without_inertia.as_ref()?.at(t)
     }
@@ -105,11 +109,13 @@ pub struct NearRest {
     pub creep: Creep,
     /// Rest times of the default pendulum at its barrier.
     pub rest_times: RestTimes,
-    /// The motions from the release, by Coulomb's law and by the arctangent, until well after the stop.
+    /// The motions from the release, by Coulomb's law and by the arctangent, until well after the
+    /// stop.
     pub motions: [Simulation; 2],
 }
 
-/// The rate at which the arctangent's motion dies near rest, from its linear damping c: the slow one of two, or that of both.
+/// The rate at which the arctangent's motion dies near rest, from its linear damping c: the slow
+/// one of two, or that of both.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -126,7 +132,8 @@ pub fn slow_rate(damping: f64) -> f64 {
     }
 }
 
-/// The work that equation (6) takes of a harmonic swing of this greatest speed, over that of Coulomb's law.
+/// The work that equation (6) takes of a harmonic swing of this greatest speed, over that of
+/// Coulomb's law.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -142,7 +149,12 @@ pub fn work_share(speed: f64) -> f64 {
 }
 
 /// A pendulum without a barrier.
-fn swing(alpha: f64, friction: Friction, x: f64, duration: f64) -> Result<Simulation, FrictionError> {
+fn swing(
+    alpha: f64,
+    friction: Friction,
+    x: f64,
+    duration: f64,
+) -> Result<Simulation, FrictionError> {
     let model = Model {
         alpha,
         friction,
@@ -157,7 +169,12 @@ fn followed(model: &Model, x: f64, duration: f64) -> Result<Simulation, Friction
         duration,
         ..Settings::default()
     };
-    let motion = simulate(model, Start { x, velocity: 0.0 }, Integrator::Taylor, &settings)?;
+    let motion = simulate(
+        model,
+        Start { x, velocity: 0.0 },
+        Integrator::Taylor,
+        &settings,
+    )?;
     match motion.stop {
         Stop::Duration => Ok(motion),
         _ => Err(FrictionError::Restless(model.alpha)),
@@ -218,11 +235,19 @@ fn first_cycle(motion: &Simulation) -> FirstCycle {
         .map(|(_, velocity)| velocity.abs())
         .collect();
     let law = |speed: f64| FRAC_2_PI * (STEEPNESS * speed).atan();
-    let part =
-        |error: f64| speeds.iter().filter(|speed| 1.0 - law(**speed) > error).count() as f64 / speeds.len() as f64;
+    let part = |error: f64| {
+        speeds
+            .iter()
+            .filter(|speed| 1.0 - law(**speed) > error)
+            .count() as f64
+            / speeds.len() as f64
+    };
     let way: f64 = speeds.iter().sum();
     let work: f64 = speeds.iter().map(|speed| law(*speed) * speed).sum();
-    let at_the_turn = motion.path.at(until).map_or(0.0, |(_, velocity)| velocity.abs());
+    let at_the_turn = motion
+        .path
+        .at(until)
+        .map_or(0.0, |(_, velocity)| velocity.abs());
     let slowest = speeds.iter().copied().fold(at_the_turn, f64::min);
     FirstCycle {
         until,
@@ -240,7 +265,8 @@ fn creep(alpha: f64, x: f64) -> Result<Creep, FrictionError> {
     let duration = 10.0 / rate_linear;
     let motion = swing(alpha, Friction::Arctangent, x, duration)?;
     let at = |t: f64| motion.path.at(t).map_or(f64::NAN, |(x, _)| x);
-    // Eight times slower than the rate |100 x'| is small, and the motion is that of the linear equation.
+    // Eight times slower than the rate |100 x'| is small, and the motion is that of the linear
+    // equation.
     let step = (0.5 / rate_linear).min(1.0);
     let rate = rate_of(
         [0.0, 1.0, 2.0, 3.0].map(|number| at(8.0 / rate_linear + number * step)),
@@ -269,15 +295,19 @@ fn creep(alpha: f64, x: f64) -> Result<Creep, FrictionError> {
     })
 }
 
-/// The rate at which a linear motion dies, from four places at equal distances of time: the slow one of two, or that of both
-/// where it swings; nothing where there is no motion. (R. Prony, 1795: x_2 = p x_1 + q x_0, and z^2 = p z + q for z = e^(-rate step).)
+/// The rate at which a linear motion dies, from four places at equal distances of time: the slow
+/// one of two, or that of both where it swings; nothing where there is no motion. (R. Prony, 1795:
+/// x_2 = p x_1 + q x_0, and z^2 = p z + q for z = e^(-rate step).)
 fn rate_of([x0, x1, x2, x3]: [f64; 4], step: f64) -> Option<f64> {
     let determinant = x1 * x1 - x0 * x2;
     let decay = match determinant.abs() < 1e-6 * x1 * x1 {
         // One exponential is left.
         true => x1 / x0,
         false => {
-            let (p, q) = ((x1 * x2 - x0 * x3) / determinant, (x1 * x3 - x2 * x2) / determinant);
+            let (p, q) = (
+                (x1 * x2 - x0 * x3) / determinant,
+                (x1 * x3 - x2 * x2) / determinant,
+            );
             match 0.25 * p * p + q {
                 square if square > 0.0 => 0.5 * p + square.sqrt(),
                 _ => (-q).sqrt(),
@@ -287,7 +317,8 @@ fn rate_of([x0, x1, x2, x3]: [f64; 4], step: f64) -> Option<f64> {
     Some(-decay.ln() / step).filter(|rate| rate.is_finite())
 }
 
-/// The creep without inertia: alpha (2/pi) atan(100 x') = -sin x, where friction bears the whole weight.
+/// The creep without inertia: alpha (2/pi) atan(100 x') = -sin x, where friction bears the whole
+/// weight.
 #[derive(Debug, Clone)]
 struct WithoutInertia {
     alpha: f64,
@@ -306,7 +337,9 @@ impl WithoutInertia {
             t: 0.0,
             y: [(0.5 * PI * (x.abs().sin() / alpha).min(1.0)).sin().ln()],
         };
-        let falls = move |_: f64, [log]: &[f64; 1], rates: &mut [f64; 1]| *rates = [-rate * place(alpha, *log).cos()];
+        let falls = move |_: f64, [log]: &[f64; 1], rates: &mut [f64; 1]| {
+            *rates = [-rate * place(alpha, *log).cos()]
+        };
         let options = Options::with_tolerance(TOLERANCE);
         let logarithm = integrate_first_order(falls, start, duration, &[], &options);
         Ok(Self {
@@ -328,9 +361,14 @@ fn place(alpha: f64, log: f64) -> f64 {
     (FRAC_2_PI * alpha * log.exp().min(1.0).asin()).asin()
 }
 
-/// On the default damper; as long as it takes four times to stop the swing without a barrier, and, by the arctangent, until it has
-/// crept from there to nothing, `creep` later.
-fn rest_times(alpha: f64, amplitude: f64, stop: f64, creep: f64) -> Result<RestTimes, FrictionError> {
+/// On the default damper; as long as it takes four times to stop the swing without a barrier, and,
+/// by the arctangent, until it has crept from there to nothing, `creep` later.
+fn rest_times(
+    alpha: f64,
+    amplitude: f64,
+    stop: f64,
+    creep: f64,
+) -> Result<RestTimes, FrictionError> {
     let rest = |friction, creep: f64| {
         let model = Model {
             alpha,
@@ -358,10 +396,19 @@ mod tests {
         let places = |motion: fn(f64) -> f64| [8.0, 8.5, 9.0, 9.5].map(motion);
         for (found, rate) in [
             (rate_of(places(|t| 2.0 * (-0.3 * t).exp()), 0.5), 0.3),
-            (rate_of(places(|t| (-0.9 * t).exp() - 3.0 * (-1.1 * t).exp()), 0.5), 0.9),
-            (rate_of(places(|t| (-0.4 * t).exp() * (0.9 * t).cos()), 0.5), 0.4),
+            (
+                rate_of(places(|t| (-0.9 * t).exp() - 3.0 * (-1.1 * t).exp()), 0.5),
+                0.9,
+            ),
+            (
+                rate_of(places(|t| (-0.4 * t).exp() * (0.9 * t).cos()), 0.5),
+                0.4,
+            ),
         ] {
-            assert!((found.unwrap() / rate - 1.0).abs() < 1e-9, "{found:?} {rate}");
+            assert!(
+                (found.unwrap() / rate - 1.0).abs() < 1e-9,
+                "{found:?} {rate}"
+            );
         }
         assert_eq!(rate_of([0.0; 4], 0.5), None);
     }
@@ -380,10 +427,16 @@ mod tests {
         }
     }
 
-    /// The formula of the creep solves its equation, alpha (2/pi) atan(100 x') = -sin x, also from beyond |x| = alpha.
+    /// The formula of the creep solves its equation, alpha (2/pi) atan(100 x') = -sin x, also from
+    /// beyond |x| = alpha.
     #[test]
     fn the_creep_solves_its_equation() {
-        for (alpha, start) in [(0.3, 0.2), (0.95, -1.058), (0.8, -0.479), (0.5, 0.5_f64.asin())] {
+        for (alpha, start) in [
+            (0.3, 0.2),
+            (0.95, -1.058),
+            (0.8, -0.479),
+            (0.5, 0.5_f64.asin()),
+        ] {
             let creep = WithoutInertia::from_rest(alpha, start, 100.0).expect("a creep");
             let at = |t: f64| creep.at(t).expect("a place");
             assert!((at(0.0) - start).abs() < 1e-13, "{alpha}: {}", at(0.0));

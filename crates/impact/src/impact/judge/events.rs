@@ -7,20 +7,26 @@
 //! stuck:     x'' = 0                                                while |all but friction| <= alpha
 //! ```
 //!
-//! It shares the forces of [`Model`] with the Taylor series and nothing else: no series, no regularised variable, no
-//! polynomials of its own, but the phases and located events of [`integrate_phases`]. In contact it counts from the
-//! barrier, so that a shallow depth keeps its digits.
+//! It shares the forces of [`Model`] with the Taylor series and nothing else: no series, no
+//! regularised variable, no polynomials of its own, but the phases and located events of
+//! [`integrate_phases`]. In contact it counts from the barrier, so that a shallow depth keeps its
+//! digits.
 
 use super::Coordinate;
 use crate::impact::model::{Model, Side, Start};
-use crate::impact::simulation::{Contact, Integrator, Path, Regime, Settings, Simulation, Stop, Turn, enter, scaled};
-use crate::numeric::ode::{self, Event, IntegrationError, Occurrence, StopReason, Trajectory, integrate_phases};
+use crate::impact::simulation::{
+    Contact, Integrator, Path, Regime, Settings, Simulation, Stop, Turn, enter, scaled,
+};
+use crate::numeric::ode::{
+    self, Event, IntegrationError, Occurrence, StopReason, Trajectory, integrate_phases,
+};
 
 /// Where the pendulum is and which way dry friction acts: a phase of the run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Place {
     region: Regime,
-    /// 1 or -1 where Coulomb friction acts, in the direction of x; 0 at rest under it, and where there is none.
+    /// 1 or -1 where Coulomb friction acts, in the direction of x; 0 at rest under it, and where
+    /// there is none.
     direction: f64,
 }
 
@@ -51,7 +57,10 @@ const NUDGE: f64 = 1e-14;
 const MOTIONS: usize = 4;
 
 fn index(place: Place, stuck: bool) -> usize {
-    let region = REGIONS.iter().position(|region| *region == place.region).unwrap_or(0);
+    let region = REGIONS
+        .iter()
+        .position(|region| *region == place.region)
+        .unwrap_or(0);
     let motion = match place.direction {
         _ if stuck => 3,
         1.0 => 1,
@@ -75,7 +84,10 @@ impl Coordinate {
                 sign: side.sign(),
                 origin: model.barrier(side).unwrap_or_default(),
             },
-            Regime::Free | Regime::Stuck => Self { sign: 1.0, origin: 0.0 },
+            Regime::Free | Regime::Stuck => Self {
+                sign: 1.0,
+                origin: 0.0,
+            },
         }
     }
 }
@@ -104,11 +116,17 @@ fn from_rest(model: &Model, region: Regime, t: f64, value: f64) -> usize {
 
 /// The contact that begins at rest on a barrier, where the motion sets off in this direction.
 fn pushed_into(model: &Model, region: Regime, x: f64, direction: f64) -> Option<Regime> {
-    let on = |side: &Side| region == Regime::Free && model.barrier(*side) == Some(x) && direction == side.sign();
-    [Side::Left, Side::Right].into_iter().find(on).map(Regime::Contact)
+    let on = |side: &Side| {
+        region == Regime::Free && model.barrier(*side) == Some(x) && direction == side.sign()
+    };
+    [Side::Left, Side::Right]
+        .into_iter()
+        .find(on)
+        .map(Regime::Contact)
 }
 
-/// The region in which a motion begins, and how fast it moves there in the coordinate of that region.
+/// The region in which a motion begins, and how fast it moves there in the coordinate of that
+/// region.
 fn beginning(model: &Model, start: Start) -> Regime {
     if let Some((side, _)) = model.depth(start.x) {
         return match model.would_pull(side.sign() * start.velocity) {
@@ -134,7 +152,11 @@ fn beginning(model: &Model, start: Start) -> Regime {
 type Watched<'a> = (Event<'a>, Meaning);
 
 /// A phase of the run, and what its events mean in turn.
-fn phase<'a>(model: &'a Model, settings: &Settings, number: usize) -> (ode::Phase<'a>, Vec<Meaning>) {
+fn phase<'a>(
+    model: &'a Model,
+    settings: &Settings,
+    number: usize,
+) -> (ode::Phase<'a>, Vec<Meaning>) {
     let (place, stuck) = place(number);
     let Place { region, direction } = place;
     if stuck {
@@ -146,10 +168,15 @@ fn phase<'a>(model: &'a Model, settings: &Settings, number: usize) -> (ode::Phas
         Regime::Contact(side) | Regime::Detached(side) => ends_of_contact(model, place, side),
     };
     watched.push(turning(model, place));
-    watched.extend(settings.rest_energy.map(|energy| fall_to_rest(model, region, energy)));
+    watched.extend(
+        settings
+            .rest_energy
+            .map(|energy| fall_to_rest(model, region, energy)),
+    );
     let (events, meanings) = watched.into_iter().unzip();
     let coordinate = Coordinate::of(model, region);
-    let swing = move |t: f64, x: f64, velocity: f64| model.field(t, x) + model.damping(velocity, direction);
+    let swing =
+        move |t: f64, x: f64, velocity: f64| model.field(t, x) + model.damping(velocity, direction);
     let phase = match region {
         Regime::Contact(_) => ode::Phase::new(
             coordinate.contact(swing, |depth, speed| model.contact(depth, speed)),
@@ -163,10 +190,13 @@ fn phase<'a>(model: &'a Model, settings: &Settings, number: usize) -> (ode::Phas
 /// Held by friction, until all the other forces together exceed it.
 fn letting_go(model: &Model, Place { region, .. }: Place) -> Watched<'_> {
     let sign = Coordinate::of(model, region).sign;
-    let excess = move |t: f64, value: f64, _: f64| force_at_rest(model, region, t, value).abs() - model.alpha;
+    let excess = move |t: f64, value: f64, _: f64| {
+        force_at_rest(model, region, t, value).abs() - model.alpha
+    };
     let next = move |state: ode::State| {
         let direction = force_at_rest(model, region, state.t, state.x).signum();
-        // The acceleration is still zero: without a sign of its own the velocity would be anybody's.
+        // The acceleration is still zero: without a sign of its own the velocity would be
+        // anybody's.
         let v = NUDGE * direction * sign;
         let (region, state) = match pushed_into(model, region, state.x, direction) {
             Some(contact) => (
@@ -200,18 +230,36 @@ fn touches(model: &Model, direction: f64) -> Vec<Watched<'_>> {
         let depth = move |_: f64, x: f64, _: f64| side.sign() * (x - barrier);
         Some((Event::switch(depth, next).rising(), Meaning::Touch(side)))
     };
-    [Side::Left, Side::Right].into_iter().filter_map(touch).collect()
+    [Side::Left, Side::Right]
+        .into_iter()
+        .filter_map(touch)
+        .collect()
 }
 
-/// Inside a barrier: back in place, and where the contact is damped, faster or no longer faster than the barrier.
-fn ends_of_contact(model: &Model, Place { region, direction }: Place, side: Side) -> Vec<Watched<'_>> {
+/// Inside a barrier: back in place, and where the contact is damped, faster or no longer faster
+/// than the barrier.
+fn ends_of_contact(
+    model: &Model,
+    Place { region, direction }: Place,
+    side: Side,
+) -> Vec<Watched<'_>> {
     let Coordinate { sign, origin } = Coordinate::of(model, region);
     let to = move |region: Regime| index(Place { region, direction }, false);
     let release = move |state: ode::State| {
         let v = sign * state.v.min(0.0);
-        (to(Regime::Free), ode::State { x: origin, v, ..state })
+        (
+            to(Regime::Free),
+            ode::State {
+                x: origin,
+                v,
+                ..state
+            },
+        )
     };
-    let mut watched = vec![(Event::switch(|_, depth, _| depth, release).falling(), Meaning::Release)];
+    let mut watched = vec![(
+        Event::switch(|_, depth, _| depth, release).falling(),
+        Meaning::Release,
+    )];
     if model.mu > 0.0 {
         let push = move |_: f64, _: f64, speed: f64| model.gamma + model.mu * speed;
         watched.push(match region {
@@ -239,7 +287,11 @@ fn turning(model: &Model, Place { region, direction }: Place) -> Watched<'_> {
     };
     let turn = Event::switch(move |_, _, v| v, next);
     let inwards = direction * Coordinate::of(model, region).sign > 0.0;
-    let turn = if inwards { turn.falling() } else { turn.rising() };
+    let turn = if inwards {
+        turn.falling()
+    } else {
+        turn.rising()
+    };
     (turn, Meaning::Turn)
 }
 
@@ -269,7 +321,13 @@ pub(in crate::impact) fn follow(
     let region = beginning(model, start);
     let Coordinate { sign, origin } = Coordinate::of(model, region);
     let first = match start.velocity {
-        _ if !model.sticks() => index(Place { region, direction: 0.0 }, false),
+        _ if !model.sticks() => index(
+            Place {
+                region,
+                direction: 0.0,
+            },
+            false,
+        ),
         0.0 => from_rest(model, region, 0.0, sign * (start.x - origin)),
         velocity => {
             let direction = velocity.signum();
@@ -304,7 +362,13 @@ pub(in crate::impact) fn follow(
         v: sign * start.velocity,
     };
     let trajectory = integrate_phases(&phases, first, begin, settings.duration, &options)?;
-    let (impacts, turns) = contacts_and_turns((model, settings), start, first_region, &trajectory, &meanings);
+    let (impacts, turns) = contacts_and_turns(
+        (model, settings),
+        start,
+        first_region,
+        &trajectory,
+        &meanings,
+    );
     let end = trajectory.end();
     let (end_x, end_velocity) = end_in_x(model, &trajectory);
     Ok(Simulation {
@@ -343,7 +407,10 @@ fn contacts_and_turns(
         turns.push(Turn { t: 0.0, x: start.x });
     }
     for Occurrence {
-        phase, event, state, ..
+        phase,
+        event,
+        state,
+        ..
     } in trajectory.occurrences().iter().copied()
     {
         let region = place(phase).0.region;
@@ -360,7 +427,8 @@ fn contacts_and_turns(
             Some(meaning @ (Meaning::Turn | Meaning::LetGo)) => {
                 let direction = force_at_rest(model, region, state.t, state.x).signum();
                 if let Meaning::LetGo = meaning
-                    && let Some(Regime::Contact(side)) = pushed_into(model, region, state.x, direction)
+                    && let Some(Regime::Contact(side)) =
+                        pushed_into(model, region, state.x, direction)
                 {
                     enter(&mut impacts, (model, settings), side, state.t, [0.0, 0.0]);
                 }
@@ -393,8 +461,8 @@ fn stop_of(reason: StopReason) -> Stop {
     }
 }
 
-/// Displacement and velocity at the end, in the coordinate of the last phase that took time: an event that switches leaves
-/// the end in the coordinate it switched to only if a step followed.
+/// Displacement and velocity at the end, in the coordinate of the last phase that took time: an
+/// event that switches leaves the end in the coordinate it switched to only if a step followed.
 fn end_in_x(model: &Model, trajectory: &Trajectory) -> (f64, f64) {
     let knots: Vec<f64> = trajectory.knots().map(|knot| knot.t).collect();
     let last_phase = knots

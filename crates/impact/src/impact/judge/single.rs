@@ -1,16 +1,18 @@
 //! The true motion of an impact, and how far the closed form is from it.
 //!
-//! In: the original equation x'' + f(x) + gamma F(x - x_c) H(x - x_c) = 0 as closures, released at rest from x = -A; with contact
-//! damping gamma F (1 + lambda x') stands for gamma F, as long as that pushes.
-//! Out: [`TrueImpact`]: speed, depth, duration and period measured on the Runge-Kutta path, the path, the drift of
-//! its energy
+//! In: the original equation x'' + f(x) + gamma F(x - x_c) H(x - x_c) = 0 as closures, released at
+//! rest from x = -A; with contact damping gamma F (1 + lambda x') stands for gamma F, as long as
+//! that pushes. Out: [`TrueImpact`]: speed, depth, duration and period measured on the Runge-Kutta
+//! path, the path, the drift of its energy
 //!
 //! ```text
 //! x'^2/2 + V(x) + gamma int_0^depth F,      V' = f
 //! ```
 //!
-//! Flight and contact are separate runs joined at the located touch; the flight back mirrors the approach where nothing is lost, and
-//! is a run of its own where the contact is damped; then the energy of the flights alone is watched. Nothing of the closed form enters: no frequency law, no line.
+//! Flight and contact are separate runs joined at the located touch; the flight back mirrors the
+//! approach where nothing is lost, and is a run of its own where the contact is damped; then the
+//! energy of the flights alone is watched. Nothing of the closed form enters: no frequency law, no
+//! line.
 
 use thiserror::Error;
 
@@ -34,16 +36,19 @@ pub struct TrueImpact {
     pub penetration: f64,
     /// Duration of the contact.
     pub duration: f64,
-    /// Time from the release to the turning point after the impact: the period, where nothing is lost.
+    /// Time from the release to the turning point after the impact: the period, where nothing is
+    /// lost.
     pub period: f64,
-    /// The path from the release to the touch, counted from the release; run backwards it is that from the exit to the return.
+    /// The path from the release to the touch, counted from the release; run backwards it is that
+    /// from the exit to the return.
     pub approach: Trajectory,
     /// The path in contact: depth and speed against the time since the touch.
     pub contact: Trajectory,
-    /// The path from the exit to the turning point after it, place against the barrier and speed out of it against the time since the
-    /// exit; nothing where it is the approach run backwards.
+    /// The path from the exit to the turning point after it, place against the barrier and speed
+    /// out of it against the time since the exit; nothing where it is the approach run backwards.
     pub back: Option<Trajectory>,
-    /// Largest change of the energy along the path, in flight alone where the contact is damped, as a part of the kinetic energy at touch: how good the path is.
+    /// Largest change of the energy along the path, in flight alone where the contact is damped, as
+    /// a part of the kinetic energy at touch: how good the path is.
     pub energy_drift: f64,
 }
 
@@ -54,8 +59,8 @@ pub struct Deviation {
     pub phases: [f64; 3],
     /// In real time, over one true period.
     pub total: f64,
-    /// With each phase's clock started at its own start, in approach, contact and return: what is left when the
-    /// error in the times of the joins is taken out.
+    /// With each phase's clock started at its own start, in approach, contact and return: what is
+    /// left when the error in the times of the joins is taken out.
     pub aligned: [f64; 3],
 }
 
@@ -91,19 +96,23 @@ pub enum TrueImpactError {
 fn way_forward(reason: &StopReason) -> String {
     match reason {
         StopReason::MaximumSteps { time } => {
-            format!("the allowed number of steps was used up at t = {time}: raise step_limit in [run]")
+            format!(
+                "the allowed number of steps was used up at t = {time}: raise step_limit in [run]"
+            )
         }
         StopReason::EndReached => format!("it is still under way at t = {LONGEST_TIME}"),
         reason => reason.to_string(),
     }
 }
 
-/// Follows the motion from its release until the barrier lets it go again. Without damping it leaves with the same speed: the flight
-/// back is the approach run backwards, so the period has as many digits as the approach, also where the release is near the
-/// top of the swing and forgets its energy. A damped contact is followed by a flight of its own to where it turns.
+/// Follows the motion from its release until the barrier lets it go again. Without damping it
+/// leaves with the same speed: the flight back is the approach run backwards, so the period has as
+/// many digits as the approach, also where the release is near the top of the swing and forgets its
+/// energy. A damped contact is followed by a flight of its own to where it turns.
 ///
-/// The contact is counted from the touch, in depth and in time, so a hard barrier costs no digits. No step may err by more
-/// than the relative tolerance at the amplitude or at the depth, however large the absolute one is.
+/// The contact is counted from the touch, in depth and in time, so a hard barrier costs no digits.
+/// No step may err by more than the relative tolerance at the amplitude or at the depth, however
+/// large the absolute one is.
 ///
 /// # Errors
 /// [`TrueImpactError`]: the barrier is not reached, or the run ends early and says why.
@@ -126,7 +135,10 @@ fn way_forward(reason: &StopReason) -> String {
 /// assert!((truth.touch.v - by_energy).abs() < 1e-10 && truth.energy_drift < 1e-9);
 /// # Ok::<(), lindstedt::impact::TrueImpactError>(())
 /// ```
-pub fn true_impact(collision: &Collision, options: &ode::Options) -> Result<TrueImpact, TrueImpactError> {
+pub fn true_impact(
+    collision: &Collision,
+    options: &ode::Options,
+) -> Result<TrueImpact, TrueImpactError> {
     let &Collision {
         release,
         barrier,
@@ -140,8 +152,9 @@ pub fn true_impact(collision: &Collision, options: &ode::Options) -> Result<True
     }
     let scale = release.abs();
     let swing = |_: f64, x: f64, _: f64| -restoring_force(x);
-    let press =
-        |depth: f64, inwards: f64| stiffness * elastic_force(depth.max(0.0)) * (1.0 + damping * inwards).max(0.0);
+    let press = |depth: f64, inwards: f64| {
+        stiffness * elastic_force(depth.max(0.0)) * (1.0 + damping * inwards).max(0.0)
+    };
     let approach = approach(swing, [release, barrier], &at_scale(options, scale))?;
     let touch = ode::State {
         x: barrier,
@@ -149,7 +162,8 @@ pub fn true_impact(collision: &Collision, options: &ode::Options) -> Result<True
     };
     let energy = 0.5 * touch.v * touch.v;
     // A barrier that is soft for this swing lets it through to the other side.
-    let size = greatest_depth(elastic_force, energy / stiffness).map_or(scale, |depth| depth.min(scale));
+    let size =
+        greatest_depth(elastic_force, energy / stiffness).map_or(scale, |depth| depth.min(scale));
     let touched = ode::State {
         t: 0.0,
         x: 0.0,
@@ -204,7 +218,8 @@ pub fn true_impact(collision: &Collision, options: &ode::Options) -> Result<True
     })
 }
 
-/// The largest change of the energy along a motion, over that of the release; a contact that loses some is left out, its way back not.
+/// The largest change of the energy along a motion, over that of the release; a contact that loses
+/// some is left out, its way back not.
 fn energy_drift(
     collision: &Collision,
     approach: &Trajectory,
@@ -220,7 +235,9 @@ fn energy_drift(
         ..
     } = collision;
     // Counted from the barrier: the energy at release is the kinetic energy at touch.
-    let potential = |to: f64| integrate_smooth(restoring_force, barrier, to, 1e-13).map(|(integral, _)| integral);
+    let potential = |to: f64| {
+        integrate_smooth(restoring_force, barrier, to, 1e-13).map(|(integral, _)| integral)
+    };
     let released = potential(release)?;
     let exit = contact.end();
     let flight = largest_change(approach, released, |gone| potential(release + gone))?;
@@ -228,7 +245,9 @@ fn energy_drift(
         None => largest_change(contact, released, |depth| {
             Ok(potential(barrier + depth)? + stiffness * work(elastic_force, depth)?)
         })?,
-        Some(back) => largest_change(back, 0.5 * exit.v * exit.v, |gone| potential(barrier - gone))?,
+        Some(back) => largest_change(back, 0.5 * exit.v * exit.v, |gone| {
+            potential(barrier - gone)
+        })?,
     };
     Ok(flight.max(rest) / released.abs())
 }
@@ -250,18 +269,29 @@ fn approach(
     [release, barrier]: [f64; 2],
     options: &ode::Options,
 ) -> Result<Trajectory, TrueImpactError> {
-    // Counted from the release: near the top of the swing every digit of the distance to it matters.
+    // Counted from the release: near the top of the swing every digit of the distance to it
+    // matters.
     let released = Coordinate {
         sign: 1.0,
         origin: release,
     };
     let way = barrier - release;
-    let start = ode::State { t: 0.0, x: 0.0, v: 0.0 };
+    let start = ode::State {
+        t: 0.0,
+        x: 0.0,
+        v: 0.0,
+    };
     let events = [
         Event::stop(|_: f64, gone: f64, _: f64| gone - way).rising(),
         Event::stop(|_: f64, _: f64, v: f64| v).falling(),
     ];
-    let approach = integrate(released.flight(swing), start, LONGEST_TIME, &events, options)?;
+    let approach = integrate(
+        released.flight(swing),
+        start,
+        LONGEST_TIME,
+        &events,
+        options,
+    )?;
     match approach.stop_reason() {
         StopReason::Event { event: 0, .. } => Ok(approach),
         StopReason::Event { .. } => Err(CollisionError::NeverReaches {
@@ -291,7 +321,13 @@ fn way_back(
         v: -exit.v,
     };
     let events = [Event::stop(|_: f64, _: f64, v: f64| v).falling()];
-    let back = integrate(outwards.flight(swing), start, LONGEST_TIME, &events, options)?;
+    let back = integrate(
+        outwards.flight(swing),
+        start,
+        LONGEST_TIME,
+        &events,
+        options,
+    )?;
     match back.stop_reason() {
         StopReason::Event { .. } => Ok(back),
         reason => Err(TrueImpactError::Stopped(reason)),
@@ -314,18 +350,21 @@ fn largest_change(
 /// A time no impact of interest takes; the number of steps is the real limit.
 const LONGEST_TIME: f64 = 1e9;
 
-/// The most that the quantities of an impact may change, relative to each, between a tolerance and one a hundred times
-/// closer. Errors go with the tolerance: what is left is about a hundredth of the change, and six digits are printed.
+/// The most that the quantities of an impact may change, relative to each, between a tolerance and
+/// one a hundred times closer. Errors go with the tolerance: what is left is about a hundredth of
+/// the change, and six digits are printed.
 const ACCURACY: f64 = 5e-5;
 
 /// The tightest tolerance worth trying in double precision.
 const TIGHTEST: f64 = 1e-14;
 
-/// The same, with its digits assured: a tolerance a hundred times looser changes no quantity by more than 5e-5 of itself.
-/// The first pair compared is that of `options` and a hundredth of it; where they differ the next one is closer.
+/// The same, with its digits assured: a tolerance a hundred times looser changes no quantity by
+/// more than 5e-5 of itself. The first pair compared is that of `options` and a hundredth of it;
+/// where they differ the next one is closer.
 ///
 /// # Errors
-/// As [`true_impact`], and [`TrueImpactError::NotSettled`] where double precision does not know six digits.
+/// As [`true_impact`], and [`TrueImpactError::NotSettled`] where double precision does not know six
+/// digits.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -344,7 +383,10 @@ const TIGHTEST: f64 = 1e-14;
 /// assert!((truth.penetration / 0.005446775 - 1.0).abs() < 1e-6); // rad
 /// # Ok::<(), lindstedt::impact::TrueImpactError>(())
 /// ```
-pub fn assured_impact(collision: &Collision, options: &ode::Options) -> Result<TrueImpact, TrueImpactError> {
+pub fn assured_impact(
+    collision: &Collision,
+    options: &ode::Options,
+) -> Result<TrueImpact, TrueImpactError> {
     let with = |tolerance: f64| {
         let options = ode::Options {
             relative_tolerance: tolerance,
@@ -375,9 +417,16 @@ pub fn assured_impact(collision: &Collision, options: &ode::Options) -> Result<T
 }
 
 impl TrueImpact {
-    /// Time to contact, speed, penetration, duration, period: in the order of [`ThreePhases::quantities`].
+    /// Time to contact, speed, penetration, duration, period: in the order of
+    /// [`ThreePhases::quantities`].
     pub fn quantities(&self) -> [f64; 5] {
-        [self.touch.t, self.touch.v, self.penetration, self.duration, self.period]
+        [
+            self.touch.t,
+            self.touch.v,
+            self.penetration,
+            self.duration,
+            self.period,
+        ]
     }
 
     /// Speed out over speed in: 1 where nothing is lost.
@@ -385,7 +434,8 @@ impl TrueImpact {
         -self.exit.v / self.touch.v
     }
 
-    /// Displacement and velocity at a time between release and return, whose ends stand for all before and after.
+    /// Displacement and velocity at a time between release and return, whose ends stand for all
+    /// before and after.
     pub fn at(&self, t: f64) -> (f64, f64) {
         let barrier = self.touch.x;
         let t = t.clamp(0.0, self.period);
@@ -393,7 +443,10 @@ impl TrueImpact {
             return self.flight(t);
         }
         if t < self.exit.t {
-            let (depth, v) = self.contact.at(t - self.touch.t).unwrap_or((0.0, self.exit.v));
+            let (depth, v) = self
+                .contact
+                .at(t - self.touch.t)
+                .unwrap_or((0.0, self.exit.v));
             return (barrier + depth, v);
         }
         if let Some(back) = &self.back {
@@ -440,7 +493,8 @@ pub fn deviation(closed_form: &ThreePhases, truth: &TrueImpact) -> Deviation {
             phase.at(phase.start + elapsed).0 - true_position(from + elapsed)
         });
     }
-    // The contact of the closed form falls into another true phase and is short: seen there with a grid of its own.
+    // The contact of the closed form falls into another true phase and is short: seen there with a
+    // grid of its own.
     let contact = &closed_form.phases[1];
     let inside = |t: f64| (0.0..=truth.period).contains(&t);
     let missed = largest(contact.start, contact.end, |t| {
@@ -451,18 +505,26 @@ pub fn deviation(closed_form: &ThreePhases, truth: &TrueImpact) -> Deviation {
         }
     });
     let total = phases.iter().copied().fold(missed, f64::max);
-    Deviation { phases, total, aligned }
+    Deviation {
+        phases,
+        total,
+        aligned,
+    }
 }
 
 /// Largest |function| on a grid: enough points that a smooth maximum is right to six digits.
 fn largest(from: f64, to: f64, function: impl Fn(f64) -> f64) -> f64 {
     let points = 2000;
-    let values = (0..=points).map(|index| function(from + (to - from) * f64::from(index) / f64::from(points)).abs());
+    let values = (0..=points)
+        .map(|index| function(from + (to - from) * f64::from(index) / f64::from(points)).abs());
     // A value that is not a number must not be passed over.
-    values.fold(
-        0.0,
-        |worst: f64, value| if value > worst || value.is_nan() { value } else { worst },
-    )
+    values.fold(0.0, |worst: f64, value| {
+        if value > worst || value.is_nan() {
+            value
+        } else {
+            worst
+        }
+    })
 }
 
 #[cfg(test)]
@@ -501,18 +563,26 @@ mod tests {
     }
 
     fn pendulum(barrier: f64, stiffness: f64) -> TrueImpact {
-        true_impact(&collision(1.5, barrier, stiffness), &Options::with_tolerance(1e-13)).unwrap()
+        true_impact(
+            &collision(1.5, barrier, stiffness),
+            &Options::with_tolerance(1e-13),
+        )
+        .unwrap()
     }
 
     fn near(value: f64, expected: f64, allowed: f64) {
-        assert!((value - expected).abs() <= allowed, "{value} against {expected}");
+        assert!(
+            (value - expected).abs() <= allowed,
+            "{value} against {expected}"
+        );
     }
 
-    /// Depth and duration of the contact from the energy alone: depth = q^2,
-    /// v^2 = v0^2 - 2 (cos x_c - cos(x_c + q^2)) - (4/5) gamma q^5 = (q_m - q) H, T_c = 8 sqrt(q_m) int_0^1
-    /// q/sqrt(H) dw.
+    /// Depth and duration of the contact from the energy alone: depth = q^2, v^2 = v0^2 - 2 (cos
+    /// x_c - cos(x_c + q^2)) - (4/5) gamma q^5 = (q_m - q) H, T_c = 8 sqrt(q_m) int_0^1 q/sqrt(H)
+    /// dw.
     fn contact_by_quadrature(barrier: f64, stiffness: f64) -> (f64, f64) {
-        let square = |q: f64| 2.0 * ((barrier + q * q).cos() - 1.5_f64.cos()) - 0.8 * stiffness * q.powi(5);
+        let square =
+            |q: f64| 2.0 * ((barrier + q * q).cos() - 1.5_f64.cos()) - 0.8 * stiffness * q.powi(5);
         let deepest = find_root(square, 0.0, 1.0).unwrap();
         let slope = |q: f64| 4.0 * q * (barrier + q * q).sin() + 4.0 * stiffness * q.powi(4);
         let quotient = |q: f64| {
@@ -524,16 +594,27 @@ mod tests {
             let q = deepest * (1.0 - w * w);
             q / quotient(q).sqrt()
         };
-        let duration = 8.0 * deepest.sqrt() * integrate_smooth(integrand, 0.0, 1.0, 1e-13).unwrap().0;
+        let duration =
+            8.0 * deepest.sqrt() * integrate_smooth(integrand, 0.0, 1.0, 1e-13).unwrap().0;
         (deepest * deepest, duration)
     }
 
     #[test]
     fn speed_depth_and_times_are_those_of_the_energy() {
         let m = 0.75_f64.sin().powi(2);
-        for (barrier, stiffness) in [(0.323, 1e6), (0.323, 3.0407e7), (0.0, 1e4), (-0.7, 1e5), (1.2, 1e8)] {
+        for (barrier, stiffness) in [
+            (0.323, 1e6),
+            (0.323, 3.0407e7),
+            (0.0, 1e4),
+            (-0.7, 1e5),
+            (1.2, 1e8),
+        ] {
             let truth = pendulum(barrier, stiffness);
-            near(truth.touch.v, (2.0 * (barrier.cos() - 1.5_f64.cos())).sqrt(), 1e-11);
+            near(
+                truth.touch.v,
+                (2.0 * (barrier.cos() - 1.5_f64.cos())).sqrt(),
+                1e-11,
+            );
             near(
                 truth.touch.v,
                 collision(1.5, barrier, stiffness).contact_speed().unwrap(),
@@ -565,7 +646,9 @@ mod tests {
     fn the_drift_tells_a_loose_run_from_a_tight_one() {
         let run = |tolerance| {
             let options = Options::with_tolerance(tolerance);
-            true_impact(&collision(1.5, 0.323, 1e6), &options).unwrap().energy_drift
+            true_impact(&collision(1.5, 0.323, 1e6), &options)
+                .unwrap()
+                .energy_drift
         };
         assert!(run(1e-5) > 1e3 * run(1e-11));
     }
@@ -577,7 +660,8 @@ mod tests {
         for column in [ContactSpeed::Paper, ContactSpeed::Energy] {
             let motion = three_phases(&swing(0.323, stiffness), column).unwrap();
             let found = deviation(&motion, &truth);
-            // The touch comes 0.044 late, so after the true one the paths part at twice the speed times that delay.
+            // The touch comes 0.044 late, so after the true one the paths part at twice the speed
+            // times that delay.
             let delay = motion.phases[0].end - truth.touch.t;
             near(delay, 2.108_808_612 - 2.064_407_608_58, 1e-9);
             assert!(
@@ -585,10 +669,17 @@ mod tests {
                 "{found:?}"
             );
             near(found.total, 2.0 * delay * truth.touch.v, 0.3 * delay);
-            // With the clock of the contact set right, what is left is a part of the depth of 1.4e-3.
+            // With the clock of the contact set right, what is left is a part of the depth
+            // of 1.4e-3.
             assert!(found.aligned[1] < 0.15 * truth.penetration, "{found:?}");
         }
-        let of = |column| deviation(&three_phases(&swing(0.323, stiffness), column).unwrap(), &truth).aligned[1];
+        let of = |column| {
+            deviation(
+                &three_phases(&swing(0.323, stiffness), column).unwrap(),
+                &truth,
+            )
+            .aligned[1]
+        };
         assert!(
             of(ContactSpeed::Energy) < 0.7 * of(ContactSpeed::Paper),
             "the right speed brings the contact closer"
@@ -600,8 +691,8 @@ mod tests {
 
     #[test]
     fn a_motion_compared_with_itself_does_not_deviate() {
-        // A linear pendulum and a linear barrier: the closed form is exact but for gravity in the contact, 0 at x_c
-        // = 0 where the spring k = 1 acts from.
+        // A linear pendulum and a linear barrier: the closed form is exact but for gravity in the
+        // contact, 0 at x_c = 0 where the spring k = 1 acts from.
         let spring = |depth: f64| depth;
         let linear = |x: f64| x;
         let exact = Swing {
@@ -624,8 +715,9 @@ mod tests {
 
     #[test]
     fn what_cannot_be_followed_is_refused() {
-        let run =
-            |amplitude, barrier| true_impact(&collision(amplitude, barrier, 1e6), &Options::default()).unwrap_err();
+        let run = |amplitude, barrier| {
+            true_impact(&collision(amplitude, barrier, 1e6), &Options::default()).unwrap_err()
+        };
         let refused = run(0.3, 0.323);
         assert!(
             matches!(refused, TrueImpactError::Collision(CollisionError::NeverReaches { furthest, .. }) if (furthest - 0.3).abs() < 1e-8),
@@ -635,14 +727,20 @@ mod tests {
             run(1.5, -1.5),
             TrueImpactError::Collision(CollisionError::ReleasedBehindBarrier { .. })
         ));
-        assert!(matches!(run(f64::NAN, 0.3), TrueImpactError::Integration(_)));
+        assert!(matches!(
+            run(f64::NAN, 0.3),
+            TrueImpactError::Integration(_)
+        ));
         let few = Options {
             maximum_steps: 5,
             ..Options::default()
         };
         let refused = true_impact(&collision(1.5, 0.323, 1e6), &few).unwrap_err();
         assert!(
-            matches!(refused, TrueImpactError::Stopped(StopReason::MaximumSteps { .. })),
+            matches!(
+                refused,
+                TrueImpactError::Stopped(StopReason::MaximumSteps { .. })
+            ),
             "{refused}"
         );
         // At rest on top: it never gets anywhere.

@@ -1,15 +1,18 @@
-//! Several polynomials side by side: their values, how often each changes its sign, and where one that does so once.
+//! Several polynomials side by side: their values, how often each changes its sign, and where one
+//! that does so once.
 //!
 //! ```text
 //! p(u h) = sum_i b_i C(m,i) u^i (1-u)^(m-i) + tail,  b_i = sum_(k<=i) C(i,k)/C(m,k) c_k h^k,  |tail| <= u^m sum_(k>m) |c_k| h^k
 //! changes of sign of p in (0, h) = changes of sign along b_0 ... b_m, less an even number
 //! ```
 //!
-//! The second line holds while the bound of the tail, which belongs to b_m alone, is smaller than b_m: then none and one are
-//! certain. (S. Bernstein's form and Descartes' rule of signs: R. T. Farouki, *Comput. Aided Geom. Design* 29 (2012) 379.)
-//! Every lane is computed as it would be alone: no operation is fused or reordered.
+//! The second line holds while the bound of the tail, which belongs to b_m alone, is smaller than
+//! b_m: then none and one are certain. (S. Bernstein's form and Descartes' rule of signs: R. T.
+//! Farouki, *Comput. Aided Geom. Design* 29 (2012) 379.) Every lane is computed as it would be
+//! alone: no operation is fused or reordered.
 
-/// The degree of Bernstein's form; what a series has beyond it is small on a step that fits its tolerance.
+/// The degree of Bernstein's form; what a series has beyond it is small on a step that fits its
+/// tolerance.
 const DEGREE: usize = 8;
 
 /// 1/C(8, k).
@@ -27,12 +30,16 @@ const INVERSE_BINOMIALS: [f64; DEGREE + 1] = [
 
 /// p(u), as even part + u odd part: two short chains of operations instead of a long one.
 #[inline(always)]
-pub(in crate::impact) fn values<const L: usize>(coefficients: &[[f64; L]], u: &[f64; L]) -> [f64; L] {
+pub(in crate::impact) fn values<const L: usize>(
+    coefficients: &[[f64; L]],
+    u: &[f64; L],
+) -> [f64; L] {
     let [values] = values_of([coefficients], u);
     values
 }
 
-/// Those of several polynomials of the same length: each to the last bit what it is alone, and sooner, for none waits for another.
+/// Those of several polynomials of the same length: each to the last bit what it is alone, and
+/// sooner, for none waits for another.
 #[inline(always)]
 pub(in crate::impact) fn values_of<const N: usize, const L: usize>(
     polynomials: [&[[f64; L]]; N],
@@ -72,7 +79,8 @@ pub(in crate::impact) fn values_and_slopes<const L: usize>(
 ) -> ([f64; L], [f64; L]) {
     let (pairs, rest) = coefficients.as_chunks::<2>();
     let mut even = rest.first().copied().unwrap_or([0.0; L]);
-    let (mut odd, mut even_slope, mut odd_slope, mut square) = ([0.0; L], [0.0; L], [0.0; L], [0.0; L]);
+    let (mut odd, mut even_slope, mut odd_slope, mut square) =
+        ([0.0; L], [0.0; L], [0.0; L], [0.0; L]);
     for lane in 0..L {
         square[lane] = u[lane] * u[lane];
     }
@@ -86,7 +94,8 @@ pub(in crate::impact) fn values_and_slopes<const L: usize>(
     }
     // The slopes so far are those by u^2.
     for lane in 0..L {
-        even_slope[lane] = 2.0 * u[lane] * (even_slope[lane] + u[lane] * odd_slope[lane]) + odd[lane];
+        even_slope[lane] =
+            2.0 * u[lane] * (even_slope[lane] + u[lane] * odd_slope[lane]) + odd[lane];
         even[lane] += u[lane] * odd[lane];
     }
     (even, even_slope)
@@ -94,7 +103,10 @@ pub(in crate::impact) fn values_and_slopes<const L: usize>(
 
 /// A bound on |p(u) - p(0)| for 0 <= u <= h.
 #[inline(always)]
-pub(in crate::impact) fn variations<const L: usize>(coefficients: &[[f64; L]], h: &[f64; L]) -> [f64; L] {
+pub(in crate::impact) fn variations<const L: usize>(
+    coefficients: &[[f64; L]],
+    h: &[f64; L],
+) -> [f64; L] {
     let (mut even, mut odd, mut square) = ([0.0; L], [0.0; L], [0.0; L]);
     for lane in 0..L {
         square[lane] = h[lane] * h[lane];
@@ -117,7 +129,8 @@ pub(in crate::impact) fn variations<const L: usize>(coefficients: &[[f64; L]], h
     odd
 }
 
-/// One round of sums of neighbours, from this place on: with its number known beforehand no loop is left.
+/// One round of sums of neighbours, from this place on: with its number known beforehand no loop is
+/// left.
 #[inline(always)]
 fn neighbours<const FIRST: usize, const L: usize>(form: &mut [[f64; L]; DEGREE + 1]) {
     for i in (FIRST..=DEGREE).rev() {
@@ -128,9 +141,13 @@ fn neighbours<const FIRST: usize, const L: usize>(form: &mut [[f64; L]; DEGREE +
     }
 }
 
-/// How often p, which is not zero at 0, changes its sign in (0, h): 0 or 1, more where that is not certain.
+/// How often p, which is not zero at 0, changes its sign in (0, h): 0 or 1, more where that is not
+/// certain.
 #[inline(always)]
-pub(in crate::impact) fn changes_of_sign<const L: usize>(coefficients: &[[f64; L]], h: &[f64; L]) -> [f64; L] {
+pub(in crate::impact) fn changes_of_sign<const L: usize>(
+    coefficients: &[[f64; L]],
+    h: &[f64; L],
+) -> [f64; L] {
     let (mut form, mut power, mut tail) = ([[0.0; L]; DEGREE + 1], [1.0; L], [0.0; L]);
     let (low, high) = coefficients.split_at(coefficients.len().min(DEGREE + 1));
     for ((entry, coefficient), inverse) in form.iter_mut().zip(low).zip(INVERSE_BINOMIALS) {
@@ -172,8 +189,9 @@ pub(in crate::impact) fn changes_of_sign<const L: usize>(coefficients: &[[f64; L
     changes
 }
 
-/// Where in each active lane p - level changes its sign, which it does once between two places where its values are known and of
-/// opposite sign: Newton's method, halving the interval where that would leave it. Nothing of note in the other lanes.
+/// Where in each active lane p - level changes its sign, which it does once between two places
+/// where its values are known and of opposite sign: Newton's method, halving the interval where
+/// that would leave it. Nothing of note in the other lanes.
 #[inline(always)]
 pub(in crate::impact) fn crossings<const L: usize>(
     coefficients: &[[f64; L]],
@@ -186,8 +204,10 @@ pub(in crate::impact) fn crossings<const L: usize>(
     let (mut left, mut right, mut u) = (*from, *to, *from);
     let slope = coefficients.get(1).copied().unwrap_or([0.0; L]);
     for lane in 0..L {
-        let chord = from[lane] + (to[lane] - from[lane]) * (start[lane] / (start[lane] - end[lane]));
-        // From the beginning of the series: the parabola with the slope there is a better guess than the chord.
+        let chord =
+            from[lane] + (to[lane] - from[lane]) * (start[lane] / (start[lane] - end[lane]));
+        // From the beginning of the series: the parabola with the slope there is a better guess
+        // than the chord.
         let bend = (end[lane] - start[lane] - slope[lane] * to[lane]) / (to[lane] * to[lane]);
         let root = (slope[lane] * slope[lane] - 4.0 * bend * start[lane]).sqrt();
         let guess = -2.0 * start[lane] / (slope[lane] + root.copysign(slope[lane]));
@@ -196,7 +216,8 @@ pub(in crate::impact) fn crossings<const L: usize>(
         u[lane] = if active[lane] { first } else { from[lane] };
         right[lane] = if active[lane] { to[lane] } else { from[lane] };
     }
-    // Newton's steps converge in a few, halvings in 60. One condition at a time: so it is done for all lanes at once.
+    // Newton's steps converge in a few, halvings in 60. One condition at a time: so it is done for
+    // all lanes at once.
     for _ in 0..100 {
         let (sum, slope) = values_and_slopes(coefficients, &u);
         let mut widest = 0.0_f64;
@@ -208,11 +229,24 @@ pub(in crate::impact) fn crossings<const L: usize>(
             let high = if side > 0.0 { right[lane] } else { here };
             let newton = here - height / slope[lane];
             let inside = (newton - low) * (high - newton);
-            let next = if inside > 0.0 { newton } else { 0.5 * (low + high) };
+            let next = if inside > 0.0 {
+                newton
+            } else {
+                0.5 * (low + high)
+            };
             let next = if height == 0.0 { here } else { next };
-            // The error of a step of Newton's is about the square of the one before; a halving says nothing.
-            let error = if inside > 0.0 { (next - here).abs() } else { span };
-            let error = if (next - low) * (high - next) > 0.0 { error } else { 0.0 };
+            // The error of a step of Newton's is about the square of the one before; a halving says
+            // nothing.
+            let error = if inside > 0.0 {
+                (next - here).abs()
+            } else {
+                span
+            };
+            let error = if (next - low) * (high - next) > 0.0 {
+                error
+            } else {
+                0.0
+            };
             left[lane] = if error <= 1e-8 * span { next } else { low };
             right[lane] = if error <= 1e-8 * span { next } else { high };
             u[lane] = next;
@@ -232,7 +266,8 @@ pub(in crate::impact) fn crossings<const L: usize>(
 mod tests {
     use super::*;
 
-    /// Lowest power first: the product of (u - root) over real roots and of (u - re)^2 + im^2 over pairs, in each lane.
+    /// Lowest power first: the product of (u - root) over real roots and of (u - re)^2 + im^2 over
+    /// pairs, in each lane.
     fn polynomial<const L: usize>(roots: [&[f64]; L], pairs: [&[(f64, f64)]; L]) -> Vec<[f64; L]> {
         let mut coefficients = vec![[0.0; L]; 25];
         for lane in 0..L {
@@ -274,7 +309,10 @@ mod tests {
         let several = polynomial(roots, [&far; 8]);
         let changes = changes_of_sign(&several, &[1.0; 8]);
         for (lane, roots) in roots.iter().enumerate() {
-            let inside = roots.iter().filter(|root| (0.0..1.0).contains(*root)).count() as f64;
+            let inside = roots
+                .iter()
+                .filter(|root| (0.0..1.0).contains(*root))
+                .count() as f64;
             // What is not certain is called two, and is looked at.
             assert!(
                 changes[lane] == inside || changes[lane] >= 2.0,
@@ -282,14 +320,16 @@ mod tests {
             );
         }
         assert_eq!(changes[..5], [0.0, 1.0, 1.0, 0.0, 1.0]);
-        // Nothing is certain where there is no number, and where what lies beyond the form is larger than it.
+        // Nothing is certain where there is no number, and where what lies beyond the form is
+        // larger than it.
         assert!(changes_of_sign(&[[f64::NAN], [1.0]], &[1.0])[0] >= 2.0);
         let mut long = vec![[0.0]; 20];
         (long[0], long[19]) = ([1.0], [-3.0]);
         assert!(changes_of_sign(&long, &[1.0])[0] >= 2.0);
     }
 
-    /// A crossing is where the root is, and in eight lanes to the last bit what it is in one; what is not asked for disturbs nothing.
+    /// A crossing is where the root is, and in eight lanes to the last bit what it is in one; what
+    /// is not asked for disturbs nothing.
     #[test]
     fn crossings_are_the_roots_in_any_lane() {
         let roots: [f64; 8] = [0.1, 0.25, 0.5, 0.75, 0.9, 0.999, 1e-9, 0.333];
@@ -297,7 +337,13 @@ mod tests {
         let several = polynomial(real, [&[(2.0, 1.0), (-1.5, 0.5)]; 8]);
         let (from, to) = ([0.0; 8], [1.0; 8]);
         let (start, end) = (values(&several, &from), values(&several, &to));
-        let all = crossings(&several, &[0.0; 8], (&from, &start), (&to, &end), &[true; 8]);
+        let all = crossings(
+            &several,
+            &[0.0; 8],
+            (&from, &start),
+            (&to, &end),
+            &[true; 8],
+        );
         let mut some = [true; 8];
         some[3] = false;
         let without = crossings(&several, &[0.0; 8], (&from, &start), (&to, &end), &some);
@@ -308,7 +354,10 @@ mod tests {
                 all[lane],
                 roots[lane]
             );
-            let own: Vec<[f64; 1]> = several.iter().map(|coefficient| [coefficient[lane]]).collect();
+            let own: Vec<[f64; 1]> = several
+                .iter()
+                .map(|coefficient| [coefficient[lane]])
+                .collect();
             let (start, end) = ([start[lane]], [end[lane]]);
             let alone = crossings(&own, &[0.0], (&[0.0], &start), (&[1.0], &end), &[true]);
             assert_eq!(alone[0].to_bits(), all[lane].to_bits());

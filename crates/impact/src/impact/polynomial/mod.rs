@@ -1,4 +1,5 @@
-//! Polynomials on an interval that begins at 0: value, slope, and every place where the sign changes.
+//! Polynomials on an interval that begins at 0: value, slope, and every place where the sign
+//! changes.
 //!
 //! ```text
 //! p(u) = c_0 + c_1 u + ... + c_n u^n,  0 <= u <= h
@@ -6,17 +7,19 @@
 //! max|p''| <= sum k (k - 1) |c_k| h^(k-2)
 //! ```
 //!
-//! Where Bernstein's form says that there is no change of sign, or one, nothing is searched (`lanes`, for several polynomials side
-//! by side). Otherwise an interval on which the line through the middle stays further from zero than the second bound holds no
-//! root; one on which the slope stays further from zero than the first bound on p'' holds at most one; any other is halved. So no
-//! root is missed, however close two of them lie, down to the rounding of the polynomial itself.
+//! Where Bernstein's form says that there is no change of sign, or one, nothing is searched
+//! (`lanes`, for several polynomials side by side). Otherwise an interval on which the line through
+//! the middle stays further from zero than the second bound holds no root; one on which the slope
+//! stays further from zero than the first bound on p'' holds at most one; any other is halved. So
+//! no root is missed, however close two of them lie, down to the rounding of the polynomial itself.
 
 pub(super) mod lanes;
 
 use crate::numeric::ode::root::find_root;
 use lanes::{changes_of_sign, crossings, values, values_and_slopes, variations};
 
-/// At most [`Roots::LIMIT`] places in rising order, without allocation; a step of a Taylor series never has more.
+/// At most [`Roots::LIMIT`] places in rising order, without allocation; a step of a Taylor series
+/// never has more.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Roots {
     values: [f64; Roots::LIMIT],
@@ -81,8 +84,8 @@ fn curvature(coefficients: &[f64], h: f64) -> f64 {
     sum
 }
 
-/// Every place in (0, h] where p changes sign, and h itself where p is zero there. A zero at 0 does not count: it was
-/// the end of the step before.
+/// Every place in (0, h] where p changes sign, and h itself where p is zero there. A zero at 0 does
+/// not count: it was the end of the step before.
 pub(super) fn sign_changes(coefficients: &[f64], h: f64) -> Roots {
     if coefficients
         .first()
@@ -106,7 +109,11 @@ pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots
         return found;
     };
     // Where it leaves zero its value at the end is that of p/u^k.
-    let end = if zeros == 0 { end } else { value(coefficients, h) };
+    let end = if zeros == 0 {
+        end
+    } else {
+        value(coefficients, h)
+    };
     let [changes] = changes_of_sign(alone(coefficients), &[h]);
     if changes == 0.0 && first * end > 0.0 {
         return found;
@@ -129,8 +136,8 @@ pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots
 /// Halvings after which an interval is called a point.
 const DEEPEST: usize = 56;
 
-/// Intervals that a search looks at: a close pair of roots takes some hundred. Where rounding or underflow is all there
-/// is, no interval is ever clear, and what is left is called a point.
+/// Intervals that a search looks at: a close pair of roots takes some hundred. Where rounding or
+/// underflow is all there is, no interval is ever clear, and what is left is called a point.
 const MOST_LOOKS: usize = 400;
 
 /// A search from left to right.
@@ -154,7 +161,8 @@ impl Search<'_> {
         let (middle, radius) = (0.5 * (from + to), 0.5 * (to - from));
         let (height, slope) = value_and_slope(self.coefficients, middle);
         if height.abs() > slope.abs() * radius + 0.5 * self.curvature * radius * radius {
-            // The sign is the same all over the interval; a change since the last one lies at its very beginning.
+            // The sign is the same all over the interval; a change since the last one lies at its
+            // very beginning.
             if height.signum() != self.sign {
                 self.add(from);
             }
@@ -183,8 +191,8 @@ impl Search<'_> {
     }
 }
 
-/// The place between `from` and `to` where p - level changes sign once; the nearer end where it does not: Newton's
-/// method, halving the interval where that would leave it.
+/// The place between `from` and `to` where p - level changes sign once; the nearer end where it
+/// does not: Newton's method, halving the interval where that would leave it.
 pub(super) fn level_crossing(coefficients: &[f64], level: f64, from: f64, to: f64) -> f64 {
     let start = value(coefficients, from) - level;
     let end = value(coefficients, to) - level;
@@ -195,7 +203,12 @@ pub(super) fn level_crossing(coefficients: &[f64], level: f64, from: f64, to: f6
 }
 
 /// The same where the values of p - level at both ends are known, and of opposite sign.
-pub(super) fn bracketed(coefficients: &[f64], level: f64, (from, start): (f64, f64), (to, end): (f64, f64)) -> f64 {
+pub(super) fn bracketed(
+    coefficients: &[f64],
+    level: f64,
+    (from, start): (f64, f64),
+    (to, end): (f64, f64),
+) -> f64 {
     let [place] = crossings(
         alone(coefficients),
         &[level],
@@ -249,7 +262,9 @@ mod tests {
     fn a_search_ends_where_there_is_nothing_but_rounding() {
         // Underflow and overflow: nothing can be told, and it says so at once.
         for scale in [5e-324, 1e-310, f64::MAX, f64::INFINITY, f64::NAN] {
-            let noise: Vec<f64> = (0..24).map(|k| if k % 3 == 0 { scale } else { -scale }).collect();
+            let noise: Vec<f64> = (0..24)
+                .map(|k| if k % 3 == 0 { scale } else { -scale })
+                .collect();
             assert!(sign_changes(&noise, 1.0).as_slice().len() <= Roots::LIMIT);
         }
     }
@@ -267,13 +282,24 @@ mod tests {
             (vec![1.0], vec![1.0]),
         ] {
             let found = sign_changes(&with_roots(&roots), 1.0);
-            assert_eq!(found.as_slice().len(), expected.len(), "{roots:?}: {found:?}");
+            assert_eq!(
+                found.as_slice().len(),
+                expected.len(),
+                "{roots:?}: {found:?}"
+            );
             for (found, expected) in found.as_slice().iter().zip(&expected) {
-                assert!((found - expected).abs() < 1e-9, "{found} against {expected}");
+                assert!(
+                    (found - expected).abs() < 1e-9,
+                    "{found} against {expected}"
+                );
             }
         }
         // Two complex roots next to the interval: no real one.
-        assert!(sign_changes(&[0.25 + 1e-12, -1.0, 1.0], 1.0).as_slice().is_empty());
+        assert!(
+            sign_changes(&[0.25 + 1e-12, -1.0, 1.0], 1.0)
+                .as_slice()
+                .is_empty()
+        );
         assert!(sign_changes(&[0.0, 0.0], 1.0).as_slice().is_empty());
     }
 }

@@ -43,7 +43,8 @@ pub(super) struct Equations {
     built: RefCell<Vec<(Phase, Rc<Followed>)>>,
 }
 
-/// A phase with equations of its own: in the barrier of a side or in none, and the direction in which dry friction acts.
+/// A phase with equations of its own: in the barrier of a side or in none, and the direction in
+/// which dry friction acts.
 type Phase = (Option<Side>, f64);
 
 /// The system of a phase: its states, and behind them the accounts that change in it.
@@ -107,7 +108,9 @@ impl Equations {
         ];
         Ok(Self {
             accelerations,
-            numbers: numbers.map(|(name, value)| (Symbol::new(name), value)).into(),
+            numbers: numbers
+                .map(|(name, value)| (Symbol::new(name), value))
+                .into(),
             case,
             built: RefCell::default(),
         })
@@ -160,10 +163,13 @@ impl Equations {
             .iter()
             .map(|(name, value)| (Symbol::new(name), value.clone()))
             .collect();
-        Ok(expression.substitute_all(&values).map_err(MechanicsError::from)?)
+        Ok(expression
+            .substitute_all(&values)
+            .map_err(MechanicsError::from)?)
     }
 
-    /// The equations of these states and the accounts that change; `more` are numbers of this phase alone.
+    /// The equations of these states and the accounts that change; `more` are numbers of this phase
+    /// alone.
     fn followed(
         &self,
         states: &[&str],
@@ -171,9 +177,11 @@ impl Equations {
         right: &[Expr],
         more: &[(&str, f64)],
     ) -> Result<Followed, PrimaryError> {
-        // What is not there costs nothing: no product with zero is followed, and no account that stands still.
+        // What is not there costs nothing: no product with zero is followed, and no account that
+        // stands still.
         let absent = self.numbers.iter().filter(|(_, value)| **value == 0.0);
-        let absent: BTreeMap<Symbol, Expr> = absent.map(|(name, _)| (*name, Expr::zero())).collect();
+        let absent: BTreeMap<Symbol, Expr> =
+            absent.map(|(name, _)| (*name, Expr::zero())).collect();
         let right: Vec<Expr> = right
             .iter()
             .map(|rate| rate.substitute_all(&absent).map_err(MechanicsError::from))
@@ -182,9 +190,17 @@ impl Equations {
         let accounts: Vec<usize> = (0..account_rates.len())
             .filter(|account| !account_rates[*account].is_zero())
             .collect();
-        let names = accounts.iter().map(|account| Symbol::new(&format!("account{account}")));
-        let names: Vec<Symbol> = states.iter().map(|name| Symbol::new(name)).chain(names).collect();
-        let rates = accounts.iter().map(|account| account_rates[*account].clone());
+        let names = accounts
+            .iter()
+            .map(|account| Symbol::new(&format!("account{account}")));
+        let names: Vec<Symbol> = states
+            .iter()
+            .map(|name| Symbol::new(name))
+            .chain(names)
+            .collect();
+        let rates = accounts
+            .iter()
+            .map(|account| account_rates[*account].clone());
         let rates: Vec<Expr> = own_rates.iter().cloned().chain(rates).collect();
         let system = System::new(&names, Symbol::new(time), &rates, &self.numbers_and(more))?;
         Ok(Followed { system, accounts })
@@ -197,7 +213,8 @@ impl Equations {
         numbers
     }
 
-    /// The torque on a pendulum at rest, which friction must hold: x'' + y'' cos x + sin x = P + G with x'' = 0.
+    /// The torque on a pendulum at rest, which friction must hold: x'' + y'' cos x + sin x = P + G
+    /// with x'' = 0.
     fn torque_at_rest(&self) -> Expr {
         own("P") - own("sin(x)") - own("cos(x)") * self.accelerations.held.clone()
     }
@@ -210,19 +227,36 @@ impl Equations {
     fn flight_system(&self, direction: f64) -> Result<Followed, PrimaryError> {
         let [torque, power] = self.friction(direction);
         let mut right = vec![own("x'")];
-        let put = |acceleration: &Expr| self.put(acceleration, &[("P", Expr::zero()), ("G", torque.clone())]);
-        let [x, y] = [put(&self.accelerations.free[0])?, put(&self.accelerations.free[1])?];
+        let put = |acceleration: &Expr| {
+            self.put(acceleration, &[("P", Expr::zero()), ("G", torque.clone())])
+        };
+        let [x, y] = [
+            put(&self.accelerations.free[0])?,
+            put(&self.accelerations.free[1])?,
+        ];
         right.extend([x, own("y'"), y]);
         right.extend(self.accounts(power, Expr::zero()));
         self.followed(&["x", "x'", "y", "y'"], "t", &right, &[])
     }
 
     /// In the barrier of a side, at its place, in s; it pushes as Hertz and Hunt and Crossley say.
-    pub(super) fn contact(&self, side: Side, place: f64, direction: f64) -> Result<Rc<Followed>, PrimaryError> {
-        self.once((Some(side), direction), || self.contact_system(side, place, direction))
+    pub(super) fn contact(
+        &self,
+        side: Side,
+        place: f64,
+        direction: f64,
+    ) -> Result<Rc<Followed>, PrimaryError> {
+        self.once((Some(side), direction), || {
+            self.contact_system(side, place, direction)
+        })
     }
 
-    fn contact_system(&self, side: Side, place: f64, direction: f64) -> Result<Followed, PrimaryError> {
+    fn contact_system(
+        &self,
+        side: Side,
+        place: f64,
+        direction: f64,
+    ) -> Result<Followed, PrimaryError> {
         let sign = Expr::from(side.sign() as i64);
         let [torque, power] = self.friction(direction);
         let force = own("w^3") * (own("gamma") + &sign * &own("mu*x'"));
@@ -231,7 +265,11 @@ impl Equations {
         let put = |expression: &Expr| {
             self.put(
                 expression,
-                &[("P", -(&sign * &force)), ("G", torque.clone()), ("x", x.clone())],
+                &[
+                    ("P", -(&sign * &force)),
+                    ("G", torque.clone()),
+                    ("x", x.clone()),
+                ],
             )
         };
         let mut right = vec![&sign * &own("x'/2")];
@@ -239,11 +277,21 @@ impl Equations {
         right.push(slow(own("y'")));
         right.push(slow(put(&self.accelerations.free[1])?));
         right.push(own("w"));
-        right.extend(self.accounts(power, own("mu*x'^2*w^3")).into_iter().map(slow));
-        self.followed(&["w", "x'", "y", "y'", "t"], "s", &right, &[("place", place)])
+        right.extend(
+            self.accounts(power, own("mu*x'^2*w^3"))
+                .into_iter()
+                .map(slow),
+        );
+        self.followed(
+            &["w", "x'", "y", "y'", "t"],
+            "s",
+            &right,
+            &[("place", place)],
+        )
     }
 
-    /// The main mass alone with the pendulum held at x; the torque on the pendulum is what friction must hold.
+    /// The main mass alone with the pendulum held at x; the torque on the pendulum is what friction
+    /// must hold.
     pub(super) fn held(&self, x: f64, contact: f64) -> Result<(Followed, Expr), PrimaryError> {
         let still = [("x'", Expr::zero())];
         let mut right = vec![own("y'"), self.accelerations.held.clone()];
@@ -255,17 +303,32 @@ impl Equations {
     }
 
     /// x'' away from the barriers, as a number; dry friction acts in this direction.
-    pub(super) fn acceleration(&self, t: f64, state: [f64; 4], direction: f64) -> Result<f64, PrimaryError> {
+    pub(super) fn acceleration(
+        &self,
+        t: f64,
+        state: [f64; 4],
+        direction: f64,
+    ) -> Result<f64, PrimaryError> {
         let [torque, _] = self.friction(direction);
-        let rate = self.put(&self.accelerations.free[0], &[("P", Expr::zero()), ("G", torque)])?;
+        let rate = self.put(
+            &self.accelerations.free[0],
+            &[("P", Expr::zero()), ("G", torque)],
+        )?;
         let [x, velocity, y, speed] = state;
-        let values = self.numbers_and(&[("t", t), ("x", x), ("x'", velocity), ("y", y), ("y'", speed)]);
+        let values = self.numbers_and(&[
+            ("t", t),
+            ("x", x),
+            ("x'", velocity),
+            ("y", y),
+            ("y'", speed),
+        ]);
         Ok(rate.evaluate(&values).unwrap_or(f64::NAN))
     }
 
     /// The torque that friction must hold, as a number.
     pub(super) fn torque(&self, t: f64, x: f64, contact: f64, [y, speed]: [f64; 2]) -> f64 {
-        let values = self.numbers_and(&[("t", t), ("x", x), ("P", contact), ("y", y), ("y'", speed)]);
+        let values =
+            self.numbers_and(&[("t", t), ("x", x), ("P", contact), ("y", y), ("y'", speed)]);
         self.torque_at_rest().evaluate(&values).unwrap_or(f64::NAN)
     }
 }

@@ -1,11 +1,13 @@
 //! From phase to phase: flight, contact, held by friction.
 //!
-//! A flight ends at a touch, or where friction changes its direction; a contact ends where w is zero again, or where the barrier
-//! would have to pull and lets go; what is held ends where the torque on it is more than friction can bear. Every phase begins with the
-//! states that the last one left, exactly.
+//! A flight ends at a touch, or where friction changes its direction; a contact ends where w is
+//! zero again, or where the barrier would have to pull and lets go; what is held ends where the
+//! torque on it is more than friction can bear. Every phase begins with the states that the last
+//! one left, exactly.
 //!
-//! At the onset of a slip x' and x'' are both zero, so that rounding decides in which direction x' leaves its zero. Therefore only
-//! crossings in one direction end a phase, and each such event has a second one at a level that rounding does not reach:
+//! At the onset of a slip x' and x'' are both zero, so that rounding decides in which direction x'
+//! leaves its zero. Therefore only crossings in one direction end a phase, and each such event has
+//! a second one at a level that rounding does not reach:
 //!
 //! ```text
 //! slip in direction d:   d x' falls through 0                          or through -ROUNDING alpha
@@ -16,7 +18,10 @@ use super::super::model::Side;
 use super::super::simulation::REST_FRACTION;
 use super::equations::{ACCOUNTS, Equations, Followed};
 use super::path::{Piece, PrimaryPath, PrimaryState};
-use super::{PrimaryCase, PrimaryEnergy, PrimaryError, PrimaryImpact, PrimaryMotion, PrimarySettings, PrimaryStop};
+use super::{
+    PrimaryCase, PrimaryEnergy, PrimaryError, PrimaryImpact, PrimaryMotion, PrimarySettings,
+    PrimaryStop,
+};
 use crate::exact::from_f64;
 use crate::expr::{Expr, parse_expression};
 use crate::system::{End, Event, Options, Path};
@@ -39,7 +44,10 @@ use crate::system::{End, Event, Options, Path};
 /// assert!((motion.at(10.0).ok_or("a state")?.y - 0.1 * 10.0_f64.cos()).abs() < 1e-5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn simulate_primary(case: PrimaryCase, settings: &PrimarySettings) -> Result<PrimaryMotion, PrimaryError> {
+pub fn simulate_primary(
+    case: PrimaryCase,
+    settings: &PrimarySettings,
+) -> Result<PrimaryMotion, PrimaryError> {
     case.check()?;
     if !(settings.duration > 0.0 && settings.duration.is_finite()) {
         return Err(PrimaryError::Duration(settings.duration));
@@ -70,7 +78,9 @@ pub fn simulate_primary(case: PrimaryCase, settings: &PrimarySettings) -> Result
         match reason {
             End::Interrupted => break PrimaryStop::Interrupted,
             End::Reached | End::Event(_) => {}
-            End::StepLimit | End::Singular | End::Overflow | End::Sticks => break PrimaryStop::Singular,
+            End::StepLimit | End::Singular | End::Overflow | End::Sticks => {
+                break PrimaryStop::Singular;
+            }
         }
         // Phases without length lead nowhere.
         run.idle = if run.t > before { 0 } else { run.idle + 1 };
@@ -135,7 +145,12 @@ fn offset(name: &str, place: f64) -> Expr {
 impl<'a> Run<'a> {
     fn new(case: PrimaryCase, settings: &'a PrimarySettings) -> Result<Self, PrimaryError> {
         let [x, velocity, y, speed] = case.start;
-        let state = PrimaryState { x, velocity, y, speed };
+        let state = PrimaryState {
+            x,
+            velocity,
+            y,
+            speed,
+        };
         let energy = case.energy(state);
         let mut run = Self {
             case,
@@ -157,7 +172,9 @@ impl<'a> Run<'a> {
             astray: 0.0,
         };
         let inside = case.model.depth(x);
-        let push = inside.map_or(0.0, |(side, depth)| -side.sign() * case.model.contact(depth, 0.0));
+        let push = inside.map_or(0.0, |(side, depth)| {
+            -side.sign() * case.model.contact(depth, 0.0)
+        });
         let direction = run.direction(push);
         if let Some((side, depth)) = inside {
             run.begin_impact(side, depth);
@@ -173,8 +190,8 @@ impl<'a> Run<'a> {
         Ok(run)
     }
 
-    /// The direction of dry friction: that of the motion, or of the torque on what is at rest; nothing where friction holds it. A
-    /// contact pushes with `contact`.
+    /// The direction of dry friction: that of the motion, or of the torque on what is at rest;
+    /// nothing where friction holds it. A contact pushes with `contact`.
     fn direction(&self, contact: f64) -> Option<f64> {
         if !self.case.sticks() {
             return Some(0.0);
@@ -187,16 +204,23 @@ impl<'a> Run<'a> {
         (torque.abs() > self.case.model.alpha).then(|| torque.signum())
     }
 
-    /// On in this direction: into the barrier on whose surface it stands, where it moves or is pushed that way, else free.
+    /// On in this direction: into the barrier on whose surface it stands, where it moves or is
+    /// pushed that way, else free.
     fn set_off(&mut self, direction: f64) -> Result<(), PrimaryError> {
         self.regime = Regime::Free(direction);
-        let PrimaryState { x, velocity, y, speed } = self.state;
+        let PrimaryState {
+            x,
+            velocity,
+            y,
+            speed,
+        } = self.state;
         for side in [Side::Left, Side::Right] {
             if x != self.place(side) {
                 continue;
             }
             let push = match velocity == 0.0 {
-                // From rest it slips in the direction that friction opposes, if only with its third derivative.
+                // From rest it slips in the direction that friction opposes, if only with its third
+                // derivative.
                 true if direction != 0.0 => direction,
                 true => self
                     .equations
@@ -220,12 +244,18 @@ impl<'a> Run<'a> {
 
     /// A barrier's place.
     fn place(&self, side: Side) -> f64 {
-        self.case.model.barrier(side).unwrap_or(f64::INFINITY * side.sign())
+        self.case
+            .model
+            .barrier(side)
+            .unwrap_or(f64::INFINITY * side.sign())
     }
 
     /// The states, and behind them the accounts that change in this phase.
     fn with_accounts(&self, states: &[f64], followed: &Followed) -> Vec<f64> {
-        let accounts = followed.accounts.iter().map(|account| self.accounts[*account]);
+        let accounts = followed
+            .accounts
+            .iter()
+            .map(|account| self.accounts[*account]);
         states.iter().copied().chain(accounts).collect()
     }
 
@@ -267,18 +297,38 @@ impl<'a> Run<'a> {
         [&forward + &Expr::zero(), forward + unseen].map(|speed| Event::stop(speed).falling())
     }
 
-    /// Away from every force of a barrier until one of these events; the first of them are the turning points of the main mass, those of
-    /// the pendulum have this number where they are looked for.
-    fn glide(&mut self, direction: f64, events: &[Event], swings: Option<usize>) -> Result<End, PrimaryError> {
+    /// Away from every force of a barrier until one of these events; the first of them are the
+    /// turning points of the main mass, those of the pendulum have this number where they are
+    /// looked for.
+    fn glide(
+        &mut self,
+        direction: f64,
+        events: &[Event],
+        swings: Option<usize>,
+    ) -> Result<End, PrimaryError> {
         let followed = self.equations.flight(direction)?;
-        let PrimaryState { x, velocity, y, speed } = self.state;
+        let PrimaryState {
+            x,
+            velocity,
+            y,
+            speed,
+        } = self.state;
         let start = self.with_accounts(&[x, velocity, y, speed], &followed);
-        let path = followed
-            .system
-            .solve(self.t, &start, self.settings.duration, events, &self.options())?;
+        let path = followed.system.solve(
+            self.t,
+            &start,
+            self.settings.duration,
+            events,
+            &self.options(),
+        )?;
         self.turns_of(&path, |state| state[2], |time| time);
-        for met in path.occurrences().iter().filter(|met| Some(met.event) == swings) {
-            self.swings.extend(path.at(met.time).map(|state| (met.time, state[0])));
+        for met in path
+            .occurrences()
+            .iter()
+            .filter(|met| Some(met.event) == swings)
+        {
+            self.swings
+                .extend(path.at(met.time).map(|state| (met.time, state[0])));
         }
         let (reason, end) = (path.reason(), path.end());
         let last = path.at(end).unwrap_or(start);
@@ -342,7 +392,11 @@ impl<'a> Run<'a> {
         let followed = self.equations.contact(side, place, direction)?;
         let depth = (side.sign() * (self.state.x - place)).max(0.0);
         // From a touch without speed the variable w would never leave its zero.
-        let w = depth.sqrt().max(if self.state.velocity == 0.0 { 1e-12 } else { 0.0 });
+        let w = depth.sqrt().max(if self.state.velocity == 0.0 {
+            1e-12
+        } else {
+            0.0
+        });
         let mut events = vec![
             Event::record(own("y'")),
             Event::stop(own("w")),
@@ -357,7 +411,9 @@ impl<'a> Run<'a> {
             let sign = Expr::from(side.sign() as i64);
             events.push(Event::stop(own("gamma") + sign * own("mu*x'")).falling());
         }
-        let PrimaryState { velocity, y, speed, .. } = self.state;
+        let PrimaryState {
+            velocity, y, speed, ..
+        } = self.state;
         let start = self.with_accounts(&[w, velocity, y, speed, self.t], &followed);
         let path = followed
             .system
@@ -365,7 +421,10 @@ impl<'a> Run<'a> {
         self.turns_of(&path, |state| state[2], |_| f64::NAN);
         let turns = path.occurrences().iter().filter(|met| met.event == 3);
         let turns: Vec<Vec<f64>> = turns.filter_map(|met| path.at(met.time)).collect();
-        let deepest = turns.iter().map(|state| state[0] * state[0]).fold(depth, f64::max);
+        let deepest = turns
+            .iter()
+            .map(|state| state[0] * state[0])
+            .fold(depth, f64::max);
         let swing = |state: &Vec<f64>| (state[4], place + side.sign() * state[0] * state[0]);
         self.swings.extend(turns.iter().map(swing));
         let reason = path.reason();
@@ -382,7 +441,8 @@ impl<'a> Run<'a> {
         if let Some(impact) = self.impacts.last_mut() {
             impact.penetration = impact.penetration.max(deepest).max(w * w);
         }
-        self.path.push(self.t, end, Piece::Contact { path, side, place });
+        self.path
+            .push(self.t, end, Piece::Contact { path, side, place });
         self.t = end;
         match reason {
             End::Event(1) => self.leave(side, direction),
@@ -400,8 +460,8 @@ impl<'a> Run<'a> {
         Ok(reason)
     }
 
-    /// Out of a barrier that comes back more slowly than the pendulum: as free as in flight, until it is out, or slow enough to be
-    /// pushed again.
+    /// Out of a barrier that comes back more slowly than the pendulum: as free as in flight, until
+    /// it is out, or slow enough to be pushed again.
     fn let_go(&mut self, side: Side, direction: f64) -> Result<End, PrimaryError> {
         let place = self.place(side);
         let sign = Expr::from(side.sign() as i64);
@@ -429,7 +489,9 @@ impl<'a> Run<'a> {
     fn hold(&mut self) -> Result<End, PrimaryError> {
         let PrimaryState { x, y, speed, .. } = self.state;
         let inside = self.case.model.depth(x);
-        let contact = inside.map_or(0.0, |(side, depth)| -side.sign() * self.case.model.contact(depth, 0.0));
+        let contact = inside.map_or(0.0, |(side, depth)| {
+            -side.sign() * self.case.model.contact(depth, 0.0)
+        });
         let (followed, torque) = self.equations.held(x, contact)?;
         let bound = self.case.model.alpha;
         let mut events = vec![Event::record(own("y'"))];
@@ -438,9 +500,13 @@ impl<'a> Run<'a> {
             events.push(Event::stop(&torque + &bound).falling());
         }
         let start = self.with_accounts(&[y, speed], &followed);
-        let path = followed
-            .system
-            .solve(self.t, &start, self.settings.duration, &events, &self.options())?;
+        let path = followed.system.solve(
+            self.t,
+            &start,
+            self.settings.duration,
+            &events,
+            &self.options(),
+        )?;
         self.turns_of(&path, |state| state[0], |time| time);
         let (reason, end) = (path.reason(), path.end());
         let last = path.at(end).unwrap_or(start);
@@ -479,8 +545,8 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Whether all energy there is could not lift the main mass to a tenth of its start: half of that, so that turning points below it
-    /// have been seen.
+    /// Whether all energy there is could not lift the main mass to a tenth of its start: half of
+    /// that, so that turning points below it have been seen.
     fn is_at_rest(&self) -> bool {
         let [.., y, speed] = self.case.start;
         let primary = &self.case.primary;

@@ -16,7 +16,8 @@ pub struct Alone {
     pub mass: f64,
     /// Its angular frequency over omega, damped; 0 where it creeps.
     pub frequency: f64,
-    /// When its envelope has fallen to a tenth, released from rest and not driven; nothing where it never does, or creeps.
+    /// When its envelope has fallen to a tenth, released from rest and not driven; nothing where it
+    /// never does, or creeps.
     pub rest_time: Option<f64>,
     /// The amplitude of the driven motion in the long run; nothing where it is not driven.
     pub amplitude: Option<f64>,
@@ -59,8 +60,11 @@ impl Primary {
         Alone {
             mass,
             frequency: square.max(0.0).sqrt(),
-            rest_time: (!driven && decay > 0.0 && square > 0.0).then(|| -REST_FRACTION.ln() / decay),
-            amplitude: driven.then_some(amplitude).filter(|amplitude| amplitude.is_finite()),
+            rest_time: (!driven && decay > 0.0 && square > 0.0)
+                .then(|| -REST_FRACTION.ln() / decay),
+            amplitude: driven
+                .then_some(amplitude)
+                .filter(|amplitude| amplitude.is_finite()),
         }
     }
 
@@ -95,15 +99,16 @@ impl Primary {
 }
 
 impl PrimaryMotion {
-    /// When the envelope of the main mass has fallen to a tenth of its first swing, for good: the larger of every two successive
-    /// turning points, joined by straight lines of log|y|.
+    /// When the envelope of the main mass has fallen to a tenth of its first swing, for good: the
+    /// larger of every two successive turning points, joined by straight lines of log|y|.
     ///
     /// # Errors
     /// Why there is none.
     pub fn rest_time(&self) -> Result<f64, NoRest> {
         let [.., y, speed] = self.case.start;
         let primary = &self.case.primary;
-        // A start with speed is that of a swing that was larger before: the envelope begins at the start.
+        // A start with speed is that of a swing that was larger before: the envelope begins at the
+        // start.
         let first = y.hypot(speed * (primary.mass / primary.stiffness).sqrt());
         if first == 0.0 {
             return Err(NoRest::NoAmplitude);
@@ -117,7 +122,11 @@ impl PrimaryMotion {
             .map(|(t, y)| (*t, y.abs()))
             .collect();
         for pair in turns.windows(2) {
-            let larger = if pair[1].1 > pair[0].1 { pair[1] } else { pair[0] };
+            let larger = if pair[1].1 > pair[0].1 {
+                pair[1]
+            } else {
+                pair[0]
+            };
             if envelope.last() != Some(&larger) {
                 envelope.push(larger);
             }
@@ -125,7 +134,8 @@ impl PrimaryMotion {
         self.falls_to(level, &envelope)
     }
 
-    /// The last time at which this envelope, straight lines of log h through (t, h), falls through a level.
+    /// The last time at which this envelope, straight lines of log h through (t, h), falls through
+    /// a level.
     ///
     /// # Errors
     /// Why it does not.

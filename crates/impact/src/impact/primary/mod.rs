@@ -1,4 +1,5 @@
-//! The main mass: a mass on spring and dashpot that carries the pendulum and its barriers, which is what an impact damper damps.
+//! The main mass: a mass on spring and dashpot that carries the pendulum and its barriers, which is
+//! what an impact damper damps.
 //!
 //! ```text
 //! T = R y'^2/2 + ((y' + x' cos x)^2 + (x' sin x)^2)/2        V = kappa y^2/2 + 1 - cos x
@@ -6,14 +7,16 @@
 //! Q_x = -F(x - x_r, x') + F(x_l - x, -x') - alpha sgn(x')    F(d, d') = max(0, gamma + mu d') d^(3/2) for d > 0, else 0
 //! ```
 //!
-//! x is the angle of the pendulum, y the displacement of the main mass over L, t is in units of 1/omega, omega^2 = g/L, energy in
-//! units of m g L; R = M/m, kappa = k L/(m g), delta = (c/m) sqrt(L/g), f = F/(m g), eta = Omega/omega. The equations are derived
-//! from these energies by [`mechanics`](crate::mechanics). The barriers move with the main mass, so the force between them and the
-//! sphere is inside: it changes neither the momentum of both nor, undamped, their energy.
+//! x is the angle of the pendulum, y the displacement of the main mass over L, t is in units of
+//! 1/omega, omega^2 = g/L, energy in units of m g L; R = M/m, kappa = k L/(m g), delta = (c/m)
+//! sqrt(L/g), f = F/(m g), eta = Omega/omega. The equations are derived from these energies by
+//! [`mechanics`](crate::mechanics). The barriers move with the main mass, so the force between them
+//! and the sphere is inside: it changes neither the momentum of both nor, undamped, their energy.
 //!
-//! In: a [`PrimaryCase`]. Out: a [`PrimaryMotion`], event by event: both states at any time, the impacts, where the energy went, and
-//! when the main mass comes to rest, beside the same main mass without damper and with the damper locked, which are linear and known in
-//! closed form. A contact is followed in w with x = x_c + w^2 and dt = w ds, in which it is analytic through the touch.
+//! In: a [`PrimaryCase`]. Out: a [`PrimaryMotion`], event by event: both states at any time, the
+//! impacts, where the energy went, and when the main mass comes to rest, beside the same main mass
+//! without damper and with the damper locked, which are linear and known in closed form. A contact
+//! is followed in w with x = x_c + w^2 and dt = w ds, in which it is analytic through the touch.
 //!
 //! (S. F. Masri, *J. Acoust. Soc. Am.* 45 (1969) 1111, for impact dampers of this kind.)
 
@@ -77,7 +80,8 @@ pub struct PrimarySettings {
     pub tolerance: f64,
     /// Phases, flights and contacts together, after which it ends.
     pub phase_limit: usize,
-    /// Whether it ends as soon as the main mass, not driven, can never again swing a tenth of its start.
+    /// Whether it ends as soon as the main mass, not driven, can never again swing a tenth of its
+    /// start.
     pub stop_at_rest: bool,
     /// Who may ask it to end.
     pub interrupt: Interrupt,
@@ -105,7 +109,8 @@ pub struct PrimaryImpact {
     pub entry: f64,
     /// When it is left; nothing where the motion ends in contact.
     pub exit: Option<f64>,
-    /// The speed of the pendulum towards the barrier at the touch; where the motion starts inside it, the speed inwards then.
+    /// The speed of the pendulum towards the barrier at the touch; where the motion starts inside
+    /// it, the speed inwards then.
     pub speed_in: f64,
     /// Its speed away from it at the release.
     pub speed_out: Option<f64>,
@@ -195,7 +200,9 @@ pub enum PrimaryError {
     #[error(transparent)]
     Model(#[from] super::model::ModelError),
     /// A pivot that is driven beside the main mass.
-    #[error("the pivot moves with the main mass: drive that by a force, and leave out the excitation beta")]
+    #[error(
+        "the pivot moves with the main mass: drive that by a force, and leave out the excitation beta"
+    )]
     Driven,
     /// The equations.
     #[error(transparent)]
@@ -217,13 +224,22 @@ impl PrimaryCase {
             ("mass", primary.mass, positive, f64::MIN_POSITIVE),
             ("stiffness", primary.stiffness, positive, f64::MIN_POSITIVE),
             ("damping", primary.damping, not_negative, 0.0),
-            ("frequency of the force", primary.frequency, not_negative, 0.0),
+            (
+                "frequency of the force",
+                primary.frequency,
+                not_negative,
+                0.0,
+            ),
             ("force", primary.force, "a number", f64::MIN),
             ("displacement", self.start[2], "a number", f64::MIN),
             ("speed", self.start[3], "a number", f64::MIN),
         ] {
             if !(value >= least && value.is_finite()) {
-                return Err(PrimaryError::Number { name, wanted, value });
+                return Err(PrimaryError::Number {
+                    name,
+                    wanted,
+                    value,
+                });
             }
         }
         let [x, velocity, ..] = self.start;
@@ -236,13 +252,21 @@ impl PrimaryCase {
 
     /// The energy of both bodies, swing and spring and barrier, in units of m g L.
     pub fn energy(&self, state: PrimaryState) -> f64 {
-        let PrimaryState { x, velocity, y, speed } = state;
+        let PrimaryState {
+            x,
+            velocity,
+            y,
+            speed,
+        } = state;
         let along = speed + velocity * x.cos();
         let across = velocity * x.sin();
         let kinetic = 0.5 * (self.primary.mass * speed * speed + along * along + across * across);
         let half = (0.5 * x).sin();
         let depth = self.model.depth(x).map_or(0.0, |(_, depth)| depth);
-        kinetic + 0.5 * self.primary.stiffness * y * y + 2.0 * half * half + self.model.elastic_energy(depth)
+        kinetic
+            + 0.5 * self.primary.stiffness * y * y
+            + 2.0 * half * half
+            + self.model.elastic_energy(depth)
     }
 
     /// Whether its dry friction is Coulomb's.
@@ -285,7 +309,11 @@ impl PrimaryMotion {
 
     /// The largest |y| from this time on, by its turning points and the end.
     pub fn largest_since(&self, time: f64) -> f64 {
-        let turns = self.turns.iter().filter(|(at, _)| *at >= time).map(|(_, y)| y.abs());
+        let turns = self
+            .turns
+            .iter()
+            .filter(|(at, _)| *at >= time)
+            .map(|(_, y)| y.abs());
         let end = self.at(self.end).map_or(0.0, |state| state.y.abs());
         turns.fold(end, f64::max)
     }

@@ -1,7 +1,8 @@
-//! The numbers that a sweep of a main mass may vary: its own, and those of the pendulum that it carries.
+//! The numbers that a sweep of a main mass may vary: its own, and those of the pendulum that it
+//! carries.
 //!
-//! In: the name of a key, `frequency`, `gamma`; with its section, `primary.mass`, `design.mass`, where two sections have a key of that
-//! name. Out: a [`PrimaryParameter`].
+//! In: the name of a key, `frequency`, `gamma`; with its section, `primary.mass`, `design.mass`,
+//! where two sections have a key of that name. Out: a [`PrimaryParameter`].
 
 use std::str::FromStr;
 
@@ -46,11 +47,13 @@ impl PrimaryParameter {
         Self::Frequency,
     ];
 
-    /// Every parameter, those of the main mass first. The pivot moves with the main mass, so the parameters of its excitation are not
-    /// among them.
+    /// Every parameter, those of the main mass first. The pivot moves with the main mass, so the
+    /// parameters of its excitation are not among them.
     pub fn all() -> impl Iterator<Item = Self> {
         let excited = [Parameter::Beta, Parameter::FrequencyRatio];
-        let carried = Parameter::ALL.into_iter().filter(move |own| !excited.contains(own));
+        let carried = Parameter::ALL
+            .into_iter()
+            .filter(move |own| !excited.contains(own));
         Self::OWN.into_iter().chain(carried.map(Self::Pendulum))
     }
 
@@ -154,7 +157,10 @@ impl FromStr for PrimaryParameter {
     fn from_str(name: &str) -> Result<Self, UnknownPrimaryParameter> {
         let is_meant = |parameter: &Self| {
             let (section, key) = parameter.key();
-            name == key || name.strip_suffix(key).is_some_and(|rest| rest == format!("{section}."))
+            name == key
+                || name
+                    .strip_suffix(key)
+                    .is_some_and(|rest| rest == format!("{section}."))
         };
         let meant: Vec<Self> = Self::all().filter(is_meant).collect();
         match meant[..] {
@@ -183,9 +189,15 @@ mod tests {
             assert_eq!(format!("{section}.{key}").parse(), Ok(parameter));
         }
         let ambiguous = "mass".parse::<PrimaryParameter>().unwrap_err().to_string();
-        assert!(ambiguous.contains("primary.mass or design.mass"), "{ambiguous}");
+        assert!(
+            ambiguous.contains("primary.mass or design.mass"),
+            "{ambiguous}"
+        );
         let unknown = "frequncy".parse::<PrimaryParameter>().unwrap_err();
         assert_eq!(unknown.help().as_deref(), Some("did you mean `frequency`?"));
-        assert!(unknown.to_string().contains("mass_ratio, stiffness"), "{unknown}");
+        assert!(
+            unknown.to_string().contains("mass_ratio, stiffness"),
+            "{unknown}"
+        );
     }
 }

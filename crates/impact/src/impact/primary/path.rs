@@ -1,4 +1,5 @@
-//! The states of both bodies at any time: flights in the time itself, contacts in the time s in which they are analytic.
+//! The states of both bodies at any time: flights in the time itself, contacts in the time s in
+//! which they are analytic.
 
 use super::super::model::Side;
 use crate::numeric::ode::root::{Until, try_bisect};
@@ -97,7 +98,8 @@ impl PrimaryPath {
         self.pieces.get(after.checked_sub(1)?)?.1.at(time)
     }
 
-    /// The contacts that begin in this interval of time: their paths in s, and the sides of their barriers.
+    /// The contacts that begin in this interval of time: their paths in s, and the sides of their
+    /// barriers.
     pub(super) fn contacts(&self, [from, until]: [f64; 2]) -> impl Iterator<Item = (&Path, Side)> {
         let within = self
             .pieces

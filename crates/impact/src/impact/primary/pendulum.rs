@@ -9,10 +9,11 @@ use super::{PrimaryImpact, PrimaryMotion};
 use crate::impact::Start;
 
 impl PrimaryMotion {
-    /// The time, in units of 1/omega, at which the envelope of the pendulum has fallen to a tenth of its largest swing, for good. On a fixed pivot
-    /// the largest swing is the first; a main mass may swing the pendulum up from where it hangs. The envelope goes through the turning points on
-    /// the side without a barrier; without a barrier, or with two, through the larger of every two successive ones. Angles count from the
-    /// place of rest.
+    /// The time, in units of 1/omega, at which the envelope of the pendulum has fallen to a tenth
+    /// of its largest swing, for good. On a fixed pivot the largest swing is the first; a main mass
+    /// may swing the pendulum up from where it hangs. The envelope goes through the turning points
+    /// on the side without a barrier; without a barrier, or with two, through the larger of every
+    /// two successive ones. Angles count from the place of rest.
     ///
     /// # Errors
     /// The reason for which there is no such time.
@@ -54,17 +55,23 @@ impl PrimaryMotion {
             })),
         }
         envelope.dedup();
-        let largest = envelope.iter().map(|(_, height)| *height).fold(0.0, f64::max);
+        let largest = envelope
+            .iter()
+            .map(|(_, height)| *height)
+            .fold(0.0, f64::max);
         match largest > 0.0 {
             true => self.falls_to(REST_FRACTION * largest, &envelope),
             false => Err(NoRest::NoAmplitude),
         }
     }
 
-    /// The greatest force of the barrier in an impact of this motion, its damping included, in units of m g.
+    /// The greatest force of the barrier in an impact of this motion, its damping included, in
+    /// units of m g.
     pub fn peak_force(&self, impact: &PrimaryImpact) -> f64 {
         let model = &self.case.model;
-        let contacts = self.path.contacts([impact.entry, impact.exit.unwrap_or(self.end)]);
+        let contacts = self
+            .path
+            .contacts([impact.entry, impact.exit.unwrap_or(self.end)]);
         let peaks = contacts.map(|(path, side)| {
             let force = |s: f64| match path.at(s) {
                 Some(state) => hertz::force(

@@ -1,7 +1,9 @@
-//! Many main masses with their pendulums: how far each swings in the long run, or when it comes to rest, with its damper, with the damper
-//! locked and without.
+//! Many main masses with their pendulums: how far each swings in the long run, or when it comes to
+//! rest, with its damper, with the damper locked and without.
 
-use super::{Others, Primary, PrimaryCase, PrimaryError, PrimarySettings, PrimaryStop, simulate_primary};
+use super::{
+    Others, Primary, PrimaryCase, PrimaryError, PrimarySettings, PrimaryStop, simulate_primary,
+};
 use crate::impact::NoRest;
 use crate::parallel::each;
 
@@ -21,7 +23,8 @@ pub struct PrimaryRow {
     pub impacts: usize,
     /// The number of impacts in the whole run.
     pub all_impacts: usize,
-    /// When the main mass comes to rest, as [`PrimaryMotion::rest_time`](super::PrimaryMotion::rest_time) says, or why it does not.
+    /// When the main mass comes to rest, as
+    /// [`PrimaryMotion::rest_time`](super::PrimaryMotion::rest_time) says, or why it does not.
     pub rest_time: Result<f64, NoRest>,
     /// The main mass without its damper and with the damper locked, in closed form.
     pub others: Others,
@@ -35,14 +38,15 @@ impl PrimaryRow {
         self.stop != PrimaryStop::Interrupted || self.end > 0.0
     }
 
-    /// Whether a force drives the main mass, so that it has an amplitude in the long run and no rest.
+    /// Whether a force drives the main mass, so that it has an amplitude in the long run and no
+    /// rest.
     pub fn is_driven(&self) -> bool {
         self.primary.force != 0.0
     }
 }
 
-/// A row for every motion, on all threads of the current pool; `progress` hears of each that is done. The result is the same for
-/// any number of threads.
+/// A row for every motion, on all threads of the current pool; `progress` hears of each that is
+/// done. The result is the same for any number of threads.
 ///
 /// # Errors
 /// The number, counted from zero, of the first motion that cannot be followed, and why.
@@ -82,7 +86,11 @@ fn row(case: PrimaryCase, settings: &PrimarySettings) -> Result<PrimaryRow, Prim
         primary: case.primary,
         end: motion.end,
         amplitude: motion.largest_since(since),
-        impacts: motion.impacts.iter().filter(|impact| impact.entry >= since).count(),
+        impacts: motion
+            .impacts
+            .iter()
+            .filter(|impact| impact.entry >= since)
+            .count(),
         all_impacts: motion.impacts.len(),
         rest_time: motion.rest_time(),
         others: case.primary.others(),

@@ -5,9 +5,10 @@
 //! contact:  x(t) = x_r + a_1 sin(pi t/T) + a_2 sin(2 pi t/T) + a_3 sin(3 pi t/T)
 //! ```
 //!
-//! Without damping r = 0, n = 1 and m = k^2: the motion of the pendulum (DLMF 22.19.2). With it, k exp(-r t) is the sine of half the
-//! amplitude that belongs to the energy at each end of the stretch, m the square of its mean, and n what makes the ends meet. The sines of
-//! the contact have the speeds of touch and release, the greatest depth and the duration.
+//! Without damping r = 0, n = 1 and m = k^2: the motion of the pendulum (DLMF 22.19.2). With it, k
+//! exp(-r t) is the sine of half the amplitude that belongs to the energy at each end of the
+//! stretch, m the square of its mean, and n what makes the ends meet. The sines of the contact have
+//! the speeds of touch and release, the greatest depth and the duration.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -53,9 +54,13 @@ impl ClosedForm {
         [depth, duration]: [f64; 2],
         [speed_in, speed_out]: [f64; 2],
     ) -> Self {
-        // In units of the depth a_1 + 3 a_3 + 2 a_2 and a_1 + 3 a_3 - 2 a_2 are the speeds in units of pi D/T, a_1 - a_3 = 1.
+        // In units of the depth a_1 + 3 a_3 + 2 a_2 and a_1 + 3 a_3 - 2 a_2 are the speeds in units
+        // of pi D/T, a_1 - a_3 = 1.
         let unit = PI * depth / duration;
-        let (mean, half) = (0.5 * (speed_in + speed_out) / unit, 0.5 * (speed_in - speed_out) / unit);
+        let (mean, half) = (
+            0.5 * (speed_in + speed_out) / unit,
+            0.5 * (speed_in - speed_out) / unit,
+        );
         let third = 0.25 * (mean - 1.0);
         Self::Contact {
             barrier,

@@ -1,4 +1,5 @@
-//! Where the energy goes: the work of each force that is not conservative, integrated along the motion.
+//! Where the energy goes: the work of each force that is not conservative, integrated along the
+//! motion.
 //!
 //! ```text
 //! W_viscous = -int 2 zeta x'^2 dt          W_friction   = -int alpha sgn(x') x' dt
@@ -6,9 +7,9 @@
 //! residual  = E(t) - E(0) - (W_viscous + W_friction + W_contact + W_excitation)
 //! ```
 //!
-//! The forces are those of the model, the motion is the one that was found, the integrals are quadratures: a motion
-//! that does not satisfy the equation shows as a residual. Where a barrier lets go because it would have to pull, the
-//! energy still in it is lost to its damping.
+//! The forces are those of the model, the motion is the one that was found, the integrals are
+//! quadratures: a motion that does not satisfy the equation shows as a residual. Where a barrier
+//! lets go because it would have to pull, the energy still in it is lost to its damping.
 
 use super::Simulation;
 use super::path::{Node, Regime};
@@ -69,8 +70,8 @@ impl Simulation {
         total
     }
 
-    /// The same, knot by knot, and between knots that lie further apart than `longest`, in units of 1/omega, at points that
-    /// do not.
+    /// The same, knot by knot, and between knots that lie further apart than `longest`, in units of
+    /// 1/omega, at points that do not.
     pub fn energy_points(&self, longest: f64, mut each: impl FnMut(EnergyPoint)) {
         let model = &self.model;
         let start = model.energy(self.start.x, self.start.velocity);
@@ -85,7 +86,9 @@ impl Simulation {
             book,
         });
         for piece in self.path.pieces() {
-            let parts = ((piece.end - piece.start) / longest).ceil().clamp(1.0, MOST_PARTS) as u32;
+            let parts = ((piece.end - piece.start) / longest)
+                .ceil()
+                .clamp(1.0, MOST_PARTS) as u32;
             let stored = |fraction: f64| {
                 let node = self.path.node(piece, fraction);
                 (model.elastic_energy(self.depth(piece.regime, &node)), node)
@@ -95,13 +98,18 @@ impl Simulation {
                 for node in self.path.quadrature(piece, span) {
                     let v = node.velocity;
                     book.viscous -= node.weight * 2.0 * model.zeta * v * v;
-                    let direction = if piece.regime == Regime::Stuck { 0.0 } else { v.signum() };
+                    let direction = if piece.regime == Regime::Stuck {
+                        0.0
+                    } else {
+                        v.signum()
+                    };
                     let dry = match model.friction {
                         Friction::Exact => model.alpha * direction * v,
                         Friction::Arctangent => -(model.damping(v, 0.0) + 2.0 * model.zeta * v) * v,
                     };
                     book.friction -= node.weight * dry;
-                    book.excitation += node.weight * (model.field(node.t, node.x) + node.x.sin()) * v;
+                    book.excitation +=
+                        node.weight * (model.field(node.t, node.x) + node.x.sin()) * v;
                     if let Regime::Contact(_) = piece.regime {
                         // mu d' d^(3/2), times d' dt.
                         book.contact -= hertz::force(node.weight * model.mu * v * v, node.depth);

@@ -1,7 +1,8 @@
 //! A motion that was followed: what is kept of it, and what can be asked of it.
 //!
-//! In: from either integrator the path, the contacts, the turning points and why the run ended. Out: a [`Simulation`]:
-//! the motion as a function of time, where its energy went, when it came to rest, how far it is from another.
+//! In: from either integrator the path, the contacts, the turning points and why the run ended.
+//! Out: a [`Simulation`]: the motion as a function of time, where its energy went, when it came to
+//! rest, how far it is from another.
 //!
 //! - `path`: the motion as a function of time, piece by piece.
 //! - `closed`: the formulas of a chain.
@@ -57,7 +58,8 @@ pub struct Settings {
     pub duration: f64,
     /// Error allowed in one step, relative to the size of x and x'.
     pub relative_tolerance: f64,
-    /// Error allowed in one step beside it, in rad, for a motion of size 1 or more; for smaller ones less in proportion.
+    /// Error allowed in one step beside it, in rad, for a motion of size 1 or more; for smaller
+    /// ones less in proportion.
     pub absolute_tolerance: f64,
     /// Steps after which the run gives up.
     pub maximum_steps: usize,
@@ -67,7 +69,8 @@ pub struct Settings {
     pub interrupt: Interrupt,
     /// Stop as soon as the rest time is known, but for Runge-Kutta, which goes on to the end.
     pub stop_at_rest: bool,
-    /// Keep the motion as a function of time; without it there are impacts, turning points and the end.
+    /// Keep the motion as a function of time; without it there are impacts, turning points and the
+    /// end.
     pub keep_path: bool,
 }
 
@@ -176,7 +179,11 @@ impl fmt::Display for Stop {
                 "the allowed number of steps was used up at t = {}: raise step_limit in [run], or shorten the duration",
                 time(t)
             ),
-            Self::Interrupted { t } => write!(formatter, "the run was stopped from outside at t = {}", time(t)),
+            Self::Interrupted { t } => write!(
+                formatter,
+                "the run was stopped from outside at t = {}",
+                time(t)
+            ),
             Self::StepTooSmall { t } => write!(
                 formatter,
                 "the tolerance could not be reached at t = {}: the steps became too small; loosen it",
@@ -201,7 +208,8 @@ pub struct Contact {
     pub entry_time: f64,
     /// When it is left; nothing where the run ended before.
     pub exit_time: Option<f64>,
-    /// Speed at the touch; where the motion starts inside the barrier, its speed inwards then, negative if it leaves.
+    /// Speed at the touch; where the motion starts inside the barrier, its speed inwards then,
+    /// negative if it leaves.
     pub speed_in: f64,
     /// Depth at the entry, rad: 0 at a touch, more where the motion starts inside the barrier.
     pub start_depth: f64,
@@ -246,7 +254,8 @@ impl Contact {
         self.speed_out = Some(speed);
         let touched = self.start_depth == 0.0;
         self.restitution = (touched && self.speed_in > 0.0).then(|| speed / self.speed_in);
-        // Two places inside and outside the barrier differ in height, and the barrier stores energy.
+        // Two places inside and outside the barrier differ in height, and the barrier stores
+        // energy.
         let held = match model.barrier(self.side) {
             Some(barrier) if !touched => {
                 let inside = barrier + self.side.sign() * self.start_depth;
@@ -272,8 +281,8 @@ pub(super) fn size(model: &Model, start: Start) -> f64 {
         .max(model.beta.abs())
 }
 
-/// The same accuracy for a motion of this size: the absolute tolerance is that of a motion of size 1, and a tiny one would
-/// be lost in it.
+/// The same accuracy for a motion of this size: the absolute tolerance is that of a motion of size
+/// 1, and a tiny one would be lost in it.
 pub(super) fn scaled(settings: &Settings, model: &Model, start: Start) -> Settings {
     let size = size(model, start);
     let scale = if size > 0.0 { size.min(1.0) } else { 1.0 };
@@ -283,10 +292,11 @@ pub(super) fn scaled(settings: &Settings, model: &Model, start: Start) -> Settin
     }
 }
 
-/// Notes that a contact begins: at this depth, which is zero at a touch, and with this speed inwards.
+/// Notes that a contact begins: at this depth, which is zero at a touch, and with this speed
+/// inwards.
 ///
-/// A contact left and entered again before x has changed by more than a step may err goes on: the pendulum is pressed
-/// against the barrier and rests there.
+/// A contact left and entered again before x has changed by more than a step may err goes on: the
+/// pendulum is pressed against the barrier and rests there.
 pub(super) fn enter(
     impacts: &mut Vec<Contact>,
     (model, settings): (&Model, &Settings),
@@ -354,7 +364,8 @@ pub struct Simulation {
     pub stop: Stop,
     /// Steps taken.
     pub steps: usize,
-    /// Where the envelope does not tell the rest, and no path or that of a chain: when |x| has fallen to a tenth of the first swing.
+    /// Where the envelope does not tell the rest, and no path or that of a chain: when |x| has
+    /// fallen to a tenth of the first swing.
     pub(super) fall: Option<f64>,
 }
 
@@ -367,7 +378,8 @@ pub struct ContactDeviation {
     pub speed_in: Option<f64>,
     /// Greatest depth, in parts of the true one; nothing where one of the runs ends in the contact.
     pub penetration: Option<f64>,
-    /// Duration, in parts of the true one; nothing likewise, and where it is too short for the clock.
+    /// Duration, in parts of the true one; nothing likewise, and where it is too short for the
+    /// clock.
     pub duration: Option<f64>,
     /// Speed of the release, in parts of the true one; nothing likewise.
     pub speed_out: Option<f64>,
@@ -384,12 +396,14 @@ pub struct Difference {
     pub until: f64,
 }
 
-/// A contact shorter than this part of the time at which it ends has lost digits of its duration to the clock.
+/// A contact shorter than this part of the time at which it ends has lost digits of its duration to
+/// the clock.
 pub(super) const CLOCK: f64 = 1e-6;
 
 impl Simulation {
-    /// The greatest force of the barrier in a contact, its damping included, in units of m g, looked for on the path. `None` where no path is kept,
-    /// where that of a chain is only near the motion, and where the contact did not end or is too short for the clock.
+    /// The greatest force of the barrier in a contact, its damping included, in units of m g,
+    /// looked for on the path. `None` where no path is kept, where that of a chain is only near the
+    /// motion, and where the contact did not end or is too short for the clock.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -434,11 +448,16 @@ impl Simulation {
         difference
     }
 
-    /// The contacts beside those of the true motion, in order; nothing for one that the true motion does not have.
+    /// The contacts beside those of the true motion, in order; nothing for one that the true motion
+    /// does not have.
     pub fn contact_deviations(&self, truth: &Self) -> Vec<Option<ContactDeviation>> {
-        let relative = |found: f64, truth: f64| Some(found / truth - 1.0).filter(|error| error.is_finite());
+        let relative =
+            |found: f64, truth: f64| Some(found / truth - 1.0).filter(|error| error.is_finite());
         let error = |(index, found): (usize, &Contact)| {
-            let truth = truth.impacts.get(index).filter(|truth| truth.side == found.side)?;
+            let truth = truth
+                .impacts
+                .get(index)
+                .filter(|truth| truth.side == found.side)?;
             let duration = |contact: &Contact| Some(contact.exit_time? - contact.entry_time);
             let both = |found: Option<f64>, truth: Option<f64>| relative(found?, truth?);
             let depth = |contact: &Contact| contact.exit_time.map(|_| contact.penetration);
@@ -453,11 +472,12 @@ impl Simulation {
         self.impacts.iter().enumerate().map(error).collect()
     }
 
-    /// Whether two barriers hold the pendulum within a tenth of its first swing: then the envelope says at once that it rests, whatever
-    /// energy is left.
+    /// Whether two barriers hold the pendulum within a tenth of its first swing: then the envelope
+    /// says at once that it rests, whatever energy is left.
     pub fn is_caged(&self) -> bool {
         let rest = self.rest();
-        self.model.is_caged(rest.place, REST_FRACTION * rest.amplitude)
+        self.model
+            .is_caged(rest.place, REST_FRACTION * rest.amplitude)
     }
 
     /// Whether a barrier was touched at all.
@@ -465,8 +485,8 @@ impl Simulation {
         !self.impacts.is_empty()
     }
 
-    /// Whether it is certain that no barrier will ever be touched: nothing drives the motion, and the energy it has left is
-    /// not enough to get there.
+    /// Whether it is certain that no barrier will ever be touched: nothing drives the motion, and
+    /// the energy it has left is not enough to get there.
     pub fn never_touches(&self) -> bool {
         let left_over = self.model.energy(self.end_x, self.end_velocity);
         let out_of_reach = |barrier: f64| {
@@ -474,7 +494,8 @@ impl Simulation {
                 && barrier.abs() > self.end_x.abs()
                 && self.model.swing_energy(barrier, 0.0) > left_over * (1.0 + 1e-9)
         };
-        // Beyond the upright position a barrier is out of reach of any motion that does not turn over.
+        // Beyond the upright position a barrier is out of reach of any motion that does not turn
+        // over.
         let upright = |barrier: f64| barrier.abs() >= std::f64::consts::PI && left_over < 2.0;
         let barriers = [self.model.left, self.model.right].into_iter().flatten();
         !self.touches()

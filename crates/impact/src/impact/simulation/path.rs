@@ -1,8 +1,9 @@
-//! The motion as a function of time, piece by piece: the polynomials of the Taylor steps, the Runge-Kutta path, or the formulas of a
-//! chain.
+//! The motion as a function of time, piece by piece: the polynomials of the Taylor steps, the
+//! Runge-Kutta path, or the formulas of a chain.
 //!
-//! A step of a series has a variable r of its own: to ask for a time is to solve t(r) = t first, which has one solution because t rises
-//! with r. In contact x = x_r + w^2, and the polynomials are those of w.
+//! A step of a series has a variable r of its own: to ask for a time is to solve t(r) = t first,
+//! which has one solution because t rises with r. In contact x = x_r + w^2, and the polynomials are
+//! those of w.
 
 use super::closed::ClosedForm;
 use crate::impact::model::Side;
@@ -60,7 +61,8 @@ impl Piece {
 /// How x and x' are kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Representation {
-    /// Coefficients of x or w, x' and t - start, so many of each, from this place of the pool on; the series ends at `length`.
+    /// Coefficients of x or w, x' and t - start, so many of each, from this place of the pool on;
+    /// the series ends at `length`.
     Series {
         offset: usize,
         terms: [usize; 3],
@@ -118,7 +120,10 @@ impl Path {
         if !(self.pieces.first()?.start..=last.end).contains(&t) {
             return None;
         }
-        let index = self.pieces.partition_point(|piece| piece.start <= t).checked_sub(1)?;
+        let index = self
+            .pieces
+            .partition_point(|piece| piece.start <= t)
+            .checked_sub(1)?;
         let piece = self.pieces.get(index)?;
         let node = self.node_at(piece, t);
         Some((node.x, node.velocity))
@@ -135,12 +140,15 @@ impl Path {
         if t > last.end {
             return None;
         }
-        let index = self.pieces.partition_point(|piece| piece.start <= t).checked_sub(1)?;
+        let index = self
+            .pieces
+            .partition_point(|piece| piece.start <= t)
+            .checked_sub(1)?;
         Some(self.pieces.get(index)?.regime)
     }
 
-    /// `(t, x, x')` at the ends of the pieces and at `between` times inside each, equally spaced in the variable of
-    /// the piece, so that a contact gets as many as a swing.
+    /// `(t, x, x')` at the ends of the pieces and at `between` times inside each, equally spaced in
+    /// the variable of the piece, so that a contact gets as many as a swing.
     pub fn points(&self, between: usize) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
         let inside = move |piece: &Piece| {
             let piece = *piece;
@@ -156,7 +164,8 @@ impl Path {
         self.pieces.iter().flat_map(inside).chain(last)
     }
 
-    /// A step of a series that ends at `length`: x, x' and t - start, in contact w instead of x, behind a barrier.
+    /// A step of a series that ends at `length`: x, x' and t - start, in contact w instead of x,
+    /// behind a barrier.
     pub(in crate::impact) fn push_series(
         &mut self,
         span: [f64; 2],
@@ -181,7 +190,12 @@ impl Path {
         self.push(span, regime, form);
     }
 
-    pub(in crate::impact) fn push_closed(&mut self, span: [f64; 2], regime: Regime, form: ClosedForm) {
+    pub(in crate::impact) fn push_closed(
+        &mut self,
+        span: [f64; 2],
+        regime: Regime,
+        form: ClosedForm,
+    ) {
         self.push(span, regime, Representation::Closed(form));
     }
 
@@ -209,7 +223,12 @@ impl Path {
     }
 
     /// A step of the judge, whose coordinate is counted from `origin` in the direction of `sign`.
-    pub(in crate::impact) fn push_judged(&mut self, span: [f64; 2], regime: Regime, [origin, sign]: [f64; 2]) {
+    pub(in crate::impact) fn push_judged(
+        &mut self,
+        span: [f64; 2],
+        regime: Regime,
+        [origin, sign]: [f64; 2],
+    ) {
         self.push(span, regime, Representation::Judged { origin, sign });
     }
 
@@ -222,9 +241,13 @@ impl Path {
         });
     }
 
-    /// Points and weights of a quadrature over a part of a piece, from one fraction of it to another: exact to rounding where
-    /// the motion is a power series that converges over it.
-    pub(in crate::impact) fn quadrature(&self, piece: &Piece, [from, to]: [f64; 2]) -> impl Iterator<Item = Node> + '_ {
+    /// Points and weights of a quadrature over a part of a piece, from one fraction of it to
+    /// another: exact to rounding where the motion is a power series that converges over it.
+    pub(in crate::impact) fn quadrature(
+        &self,
+        piece: &Piece,
+        [from, to]: [f64; 2],
+    ) -> impl Iterator<Item = Node> + '_ {
         let piece = *piece;
         nodes_and_weights(from, to).map(move |(fraction, weight)| {
             let node = self.node(&piece, fraction);
@@ -291,7 +314,10 @@ impl Path {
         };
         match piece.form {
             Representation::Series {
-                offset, terms, length, ..
+                offset,
+                terms,
+                length,
+                ..
             } => {
                 let [_, _, time] = self.series(offset, terms);
                 let wanted = t - piece.start;

@@ -1,4 +1,5 @@
-//! Where a motion settles: at the bottom of its turn, or held above it by a barrier that stands in the way.
+//! Where a motion settles: at the bottom of its turn, or held above it by a barrier that stands in
+//! the way.
 //!
 //! ```text
 //! bottom:   2 pi n, the nearest
@@ -23,9 +24,14 @@ pub(in crate::impact) struct Place {
 }
 
 impl Place {
-    /// The one at which a motion here settles, friction and excitation left aside; for a motion that is nowhere, the bottom.
+    /// The one at which a motion here settles, friction and excitation left aside; for a motion
+    /// that is nowhere, the bottom.
     pub fn near(model: &Model, x: f64) -> Self {
-        let bottom = if x.is_finite() { TAU * (x / TAU).round() } else { 0.0 };
+        let bottom = if x.is_finite() {
+            TAU * (x / TAU).round()
+        } else {
+            0.0
+        };
         let held = [Side::Left, Side::Right].into_iter().find_map(|side| {
             let barrier = model.barrier(side).filter(|_| model.gamma > 0.0)?;
             let height = side.sign() * (bottom - barrier);
@@ -52,10 +58,12 @@ impl Place {
         (self.x - self.bottom).abs()
     }
 
-    /// The side on which every swing shows its whole energy, where there is one: no barrier stands there, and one on the other. A barrier
-    /// beyond the upright position is none.
+    /// The side on which every swing shows its whole energy, where there is one: no barrier stands
+    /// there, and one on the other. A barrier beyond the upright position is none.
     pub fn free_side(&self, model: &Model) -> Option<Side> {
-        let stands = |barrier: Option<f64>| barrier.is_some_and(|barrier| (barrier - self.bottom).abs() <= PI);
+        let stands = |barrier: Option<f64>| {
+            barrier.is_some_and(|barrier| (barrier - self.bottom).abs() <= PI)
+        };
         match (self.held, stands(model.left), stands(model.right)) {
             (Some(Side::Right), ..) | (None, false, true) => Some(Side::Left),
             (Some(Side::Left), ..) | (None, true, false) => Some(Side::Right),

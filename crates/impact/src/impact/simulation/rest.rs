@@ -1,4 +1,5 @@
-//! When it comes to rest: the envelope of the amplitude and the time at which it falls to a tenth of the first swing.
+//! When it comes to rest: the envelope of the amplitude and the time at which it falls to a tenth
+//! of the first swing.
 //!
 //! ```text
 //! first swing:  A_0 of the energy at the start, E = 1 - cos A_0, half a turn where it turns over
@@ -8,20 +9,25 @@
 //! last crossing: the last time |x| = A_0/10
 //! ```
 //!
-//! Here x is counted from the place of rest (`place`), which is not 0 where a barrier holds the pendulum above the bottom, or where it has
-//! turned over; A_0 is less by how far above the bottom that is.
+//! Here x is counted from the place of rest (`place`), which is not 0 where a barrier holds the
+//! pendulum above the bottom, or where it has turned over; A_0 is less by how far above the bottom
+//! that is.
 //!
-//! Where the line to the next turning point is at the level before the motion itself, as where one swing takes nearly everything, or just
-//! after a turning point, the fall of |x| from the turning point is the rest: the later of the two, so that neither makes it jump. A motion
-//! that creeps has none but that.
+//! Where the line to the next turning point is at the level before the motion itself, as where one
+//! swing takes nearly everything, or just after a turning point, the fall of |x| from the turning
+//! point is the rest: the later of the two, so that neither makes it jump. A motion that creeps has
+//! none but that.
 //!
-//! A barrier turns the motion early on its side: how far it gets there says where the barrier stands and nothing of the swing. On the
-//! other side every swing shows its whole energy, impacts or not, so the rest time is continuous in the parameters wherever the motion
-//! is, but for one case: beside one barrier, where dry friction just holds the pendulum at a turning point on the barrier's side, the
-//! next one on the other side, half a swing later, is missing, and the line ends sooner.
+//! A barrier turns the motion early on its side: how far it gets there says where the barrier
+//! stands and nothing of the swing. On the other side every swing shows its whole energy, impacts
+//! or not, so the rest time is continuous in the parameters wherever the motion is, but for one
+//! case: beside one barrier, where dry friction just holds the pendulum at a turning point on the
+//! barrier's side, the next one on the other side, half a swing later, is missing, and the line
+//! ends sooner.
 //!
-//! The last crossing is a staircase: it jumps by half a swing when one more crest stays below the level. A crossing counts only once the
-//! turning point after it has been reached; a run that ends before knows of no rest.
+//! The last crossing is a staircase: it jumps by half a swing when one more crest stays below the
+//! level. A crossing counts only once the turning point after it has been reached; a run that ends
+//! before knows of no rest.
 
 use std::f64::consts::{PI, TAU};
 
@@ -40,11 +46,13 @@ pub const REST_FRACTION: f64 = 0.1;
 pub struct Rest {
     /// The amplitude of the first swing, rad.
     pub amplitude: f64,
-    /// The place of rest from which amplitudes are counted, rad: 0, unless a barrier holds the pendulum elsewhere or it has turned over.
+    /// The place of rest from which amplitudes are counted, rad: 0, unless a barrier holds the
+    /// pendulum elsewhere or it has turned over.
     pub place: f64,
     /// The time at which the envelope falls to a tenth of it.
     pub time: Result<f64, NoRest>,
-    /// The last time at which the pendulum was so far from the place of rest; nothing where it never was.
+    /// The last time at which the pendulum was so far from the place of rest; nothing where it
+    /// never was.
     pub last_crossing: Option<f64>,
 }
 
@@ -55,11 +63,14 @@ pub enum NoRest {
     /// The motion has not become small enough.
     #[error("the amplitude stays above 10 % of the first swing until the end of the run")]
     StaysAbove,
-    /// It has become small enough in the last swing, but when is not known before the next turning point.
+    /// It has become small enough in the last swing, but when is not known before the next turning
+    /// point.
     #[error("the run ends before the turning point that would show it: a longer duration will")]
     NotYetSeen,
     /// There is no amplitude to begin with.
-    #[error("the motion starts at its place of rest without speed: it has no amplitude that could decay")]
+    #[error(
+        "the motion starts at its place of rest without speed: it has no amplitude that could decay"
+    )]
     NoAmplitude,
     /// The run broke off.
     #[error("the run ended before it could be seen")]
@@ -110,8 +121,8 @@ impl Simulation {
         }
     }
 
-    /// The amplitude of a swing with the energy of the start, so that a motion has the same wherever in its first swing
-    /// it is taken up.
+    /// The amplitude of a swing with the energy of the start, so that a motion has the same
+    /// wherever in its first swing it is taken up.
     fn first_swing(&self) -> f64 {
         first_swing(&self.model, self.start)
     }
@@ -121,23 +132,26 @@ impl Simulation {
         Place::near(&self.model, self.end_x)
     }
 
-    /// The points of the envelope of the amplitude in order, the first swing at the start: (t, |x|) are what is joined by straight lines
-    /// of log|x|, with x counted from the place of rest.
+    /// The points of the envelope of the amplitude in order, the first swing at the start: (t, |x|)
+    /// are what is joined by straight lines of log|x|, with x counted from the place of rest.
     pub fn envelope(&self) -> Vec<Turn> {
         self.envelope_from(self.first_swing())
     }
 
     /// The same from this first swing; only the points that are known to belong to it.
     fn envelope_from(&self, amplitude: f64) -> Vec<Turn> {
-        let mut envelope = vec![Turn { t: 0.0, x: amplitude }];
+        let mut envelope = vec![Turn {
+            t: 0.0,
+            x: amplitude,
+        }];
         let place = self.place();
         let free = place.free_side(&self.model);
         let counted = |turn: &Turn| Turn {
             t: turn.t,
             x: turn.x - place.x,
         };
-        // From where it came tells on which side a turning point lies; a moment of rest without motion before it, as
-        // under friction, lies where the last one did.
+        // From where it came tells on which side a turning point lies; a moment of rest without
+        // motion before it, as under friction, lies where the last one did.
         let mut before = self.start.x;
         let mut side = None;
         let mut last: Option<Turn> = None;
@@ -170,8 +184,13 @@ impl Simulation {
             && self.end_velocity == 0.0
             && self.turns.last().is_some_and(|turn| turn.x == self.end_x);
         if held {
-            // Since when, not until when: how long a run is does not change when its motion came to rest.
-            let at_rest = self.turns.iter().rev().take_while(|turn| turn.x == self.end_x);
+            // Since when, not until when: how long a run is does not change when its motion came to
+            // rest.
+            let at_rest = self
+                .turns
+                .iter()
+                .rev()
+                .take_while(|turn| turn.x == self.end_x);
             envelope.extend(at_rest.last().map(counted));
         } else if self.stop == Stop::RestEnergy {
             envelope.push(Turn {
@@ -184,7 +203,8 @@ impl Simulation {
 
     /// The amplitude of a swing with the energy of the end.
     fn last_swing(&self) -> f64 {
-        let swing = swing_of(self.model.energy(self.end_x, self.end_velocity)).unwrap_or(f64::INFINITY);
+        let swing =
+            swing_of(self.model.energy(self.end_x, self.end_velocity)).unwrap_or(f64::INFINITY);
         (swing - self.place().height()).max(0.0)
     }
 
@@ -196,13 +216,17 @@ impl Simulation {
         };
         let above = envelope[index];
         match envelope.get(index + 1) {
-            Some(below) => Ok(ByTurns::Line { above, below: *below }),
+            Some(below) => Ok(ByTurns::Line {
+                above,
+                below: *below,
+            }),
             None => self.creeping(above, level),
         }
     }
 
-    /// Where no turning point of the envelope follows `above`: a motion that has not turned for a whole period of the
-    /// linear swing creeps, and is its own envelope; any other has to be followed further.
+    /// Where no turning point of the envelope follows `above`: a motion that has not turned for a
+    /// whole period of the linear swing creeps, and is its own envelope; any other has to be
+    /// followed further.
     fn creeping(&self, above: Turn, level: f64) -> Result<ByTurns, NoRest> {
         if self.model.beta != 0.0 || self.last_swing() > level {
             return Err(NoRest::StaysAbove);
@@ -221,8 +245,9 @@ impl Simulation {
         })
     }
 
-    /// The turning point from which the fall to a tenth has to be known and no path tells it: none is kept, or it is that of a chain,
-    /// whose formulas are only near the motion between turning points.
+    /// The turning point from which the fall to a tenth has to be known and no path tells it: none
+    /// is kept, or it is that of a chain, whose formulas are only near the motion between turning
+    /// points.
     pub(in crate::impact) fn untold_fall(&self) -> Option<Turn> {
         let level = REST_FRACTION * self.first_swing();
         if level == 0.0 || self.path_tells_the_fall() || !self.stop.is_complete() {
@@ -242,13 +267,18 @@ impl Simulation {
         self.integrator != Integrator::Chain && !self.path.pieces().is_empty()
     }
 
-    /// When |x| has fallen to the level on the way from a turning point, or the start, to the next, all counted from the place of rest.
+    /// When |x| has fallen to the level on the way from a turning point, or the start, to the next,
+    /// all counted from the place of rest.
     pub(in crate::impact) fn fall(&self, from: Turn, level: f64) -> Option<f64> {
         if !self.path_tells_the_fall() {
             return self.fall;
         }
         let place = self.place().x;
-        let begins = if from.t > 0.0 { from.x } else { self.start.x - place };
+        let begins = if from.t > 0.0 {
+            from.x
+        } else {
+            self.start.x - place
+        };
         let next = self.turns.iter().find(|turn| turn.t > from.t);
         let until = next.map_or(self.end_time, |turn| turn.t);
         let edge = place + level.copysign(begins);
@@ -257,8 +287,8 @@ impl Simulation {
         falls.then(|| crossing_of(excess, from.t, until))
     }
 
-    /// Between turning points x only rises or only falls: the last stretch that begins beyond the level holds the
-    /// crossing, unless the run ends beyond it.
+    /// Between turning points x only rises or only falls: the last stretch that begins beyond the
+    /// level holds the crossing, unless the run ends beyond it.
     fn last_crossing(&self, level: f64) -> Option<f64> {
         let place = self.place().x;
         let beyond = |x: f64| (x - place).abs() > level;
@@ -289,7 +319,8 @@ impl Simulation {
     }
 }
 
-/// The amplitude, rad, of a swing with the energy of the start, counted from the place at which it would settle if it did not turn over.
+/// The amplitude, rad, of a swing with the energy of the start, counted from the place at which it
+/// would settle if it did not turn over.
 pub(in crate::impact) fn first_swing(model: &Model, start: Start) -> f64 {
     let Start { x, velocity } = start;
     let place = Place::near(model, x);
@@ -299,7 +330,8 @@ pub(in crate::impact) fn first_swing(model: &Model, start: Start) -> f64 {
     }
 }
 
-/// Whether the turning points show that the envelope is below this level, where nothing can raise it again.
+/// Whether the turning points show that the envelope is below this level, where nothing can raise
+/// it again.
 pub(in crate::impact) fn has_rested(model: &Model, turns: &[Turn], level: f64) -> bool {
     if model.beta != 0.0 {
         return false;
@@ -323,26 +355,29 @@ pub(in crate::impact) fn has_rested(model: &Model, turns: &[Turn], level: f64) -
     }
 }
 
-/// The amplitude of the swing with this energy, `1 - cos A = E`, in units of m g L; nothing where it turns over.
+/// The amplitude of the swing with this energy, `1 - cos A = E`, in units of m g L; nothing where
+/// it turns over.
 fn swing_of(energy: f64) -> Option<f64> {
     (energy < 2.0).then(|| 2.0 * (0.5 * energy.max(0.0)).sqrt().asin())
 }
 
-/// Whether the motion may still be beyond the level where the straight line of log|x| between two turning points is at it: where it may
-/// not, nobody need know the fall.
+/// Whether the motion may still be beyond the level where the straight line of log|x| between two
+/// turning points is at it: where it may not, nobody need know the fall.
 ///
-/// To the level the linear swing of amplitude a takes acos(level/a). Where a turning point is at least half as far out as the one before,
-/// a is twice the level at most: the swing of the pendulum is longer by a fortieth there, and what damps, viscous or dry, makes it
-/// longer by a fifth.
+/// To the level the linear swing of amplitude a takes acos(level/a). Where a turning point is at
+/// least half as far out as the one before, a is twice the level at most: the swing of the pendulum
+/// is longer by a fortieth there, and what damps, viscous or dry, makes it longer by a fifth.
 fn may_be_late(above: Turn, below: Turn, level: f64) -> bool {
     let halves = 2.0 * below.x.abs() < above.x.abs();
     halves || between(above, below, level) - above.t < LONGEST_FALL * (level / above.x.abs()).acos()
 }
 
-/// In parts of that of the linear swing: the fall from a turning point that is followed by one at least half as far out.
+/// In parts of that of the linear swing: the fall from a turning point that is followed by one at
+/// least half as far out.
 const LONGEST_FALL: f64 = 1.5;
 
-/// The time at which the straight line of log|x| from one turning point to a later one passes the level between them.
+/// The time at which the straight line of log|x| from one turning point to a later one passes the
+/// level between them.
 fn between(above: Turn, below: Turn, level: f64) -> f64 {
     // Friction may hold it at zero, whose logarithm is not to be had.
     let height = |turn: Turn| turn.x.abs().max(1e-12 * level).ln();

@@ -1,7 +1,8 @@
 //! The values that one parameter takes in a sweep.
 //!
-//! In: `gamma=1e4:1e9:50:log`, equal ratios; `zeta=0.01:0.05:9`, equal steps; `zeta=0.01,0.02,0.05`, these values. Out: an
-//! [`Axis`], whose values are finite and all different, for two motions of a sweep are never the same.
+//! In: `gamma=1e4:1e9:50:log`, equal ratios; `zeta=0.01:0.05:9`, equal steps;
+//! `zeta=0.01,0.02,0.05`, these values. Out: an [`Axis`], whose values are finite and all
+//! different, for two motions of a sweep are never the same.
 //!
 //! ```text
 //! linear         from + (to - from) k/(n - 1)                           k = 0, 1, ..., n - 1
@@ -70,7 +71,9 @@ pub enum AxisError {
     #[error("`{0}` is no finite number")]
     Number(String),
     /// Ends further apart than numbers reach.
-    #[error("from {from} to {to} is further than numbers reach: bring the ends together, or write `:log`")]
+    #[error(
+        "from {from} to {to} is further than numbers reach: bring the ends together, or write `:log`"
+    )]
     Wide {
         /// The first value.
         from: f64,
@@ -109,13 +112,16 @@ impl Axis {
     /// So many values by equal steps, both ends included.
     ///
     /// # Errors
-    /// [`AxisError`], for ends that are not finite or one and the same, and for a count below 2 or beyond [`MOST_MOTIONS`].
+    /// [`AxisError`], for ends that are not finite or one and the same, and for a count below 2 or
+    /// beyond [`MOST_MOTIONS`].
     pub fn linear(name: &str, from: f64, to: f64, count: usize) -> Result<Self, AxisError> {
         let span = to - from;
         if from.is_finite() && to.is_finite() && !span.is_finite() {
             return Err(AxisError::Wide { from, to });
         }
-        Self::range(name, Spacing::Linear, [from, to], count, |part| from + span * part)
+        Self::range(name, Spacing::Linear, [from, to], count, |part| {
+            from + span * part
+        })
     }
 
     /// So many values by equal ratios, both ends included.
@@ -163,7 +169,8 @@ impl Axis {
     /// These values, in this order.
     ///
     /// # Errors
-    /// [`AxisError`], for values that are not finite or come twice, and for fewer than two or more than [`MOST_MOTIONS`].
+    /// [`AxisError`], for values that are not finite or come twice, and for fewer than two or more
+    /// than [`MOST_MOTIONS`].
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -227,13 +234,18 @@ impl FromStr for Axis {
     fn from_str(text: &str) -> Result<Self, AxisError> {
         let form = || AxisError::Form(text.to_owned());
         let (name, values) = text.split_once('=').ok_or_else(form)?;
-        let name = Some(name.trim()).filter(|name| !name.is_empty()).ok_or_else(form)?;
+        let name = Some(name.trim())
+            .filter(|name| !name.is_empty())
+            .ok_or_else(form)?;
         let number = |text: &str| match text.trim().parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(value),
             _ => Err(AxisError::Number(text.trim().to_owned())),
         };
         if values.contains(',') && !values.contains(':') {
-            return Self::list(name, values.split(',').map(number).collect::<Result<_, _>>()?);
+            return Self::list(
+                name,
+                values.split(',').map(number).collect::<Result<_, _>>()?,
+            );
         }
         let parts: Vec<&str> = values.split(':').map(str::trim).collect();
         let (from, to, count, spacing) = match parts[..] {
@@ -242,7 +254,9 @@ impl FromStr for Axis {
             _ => return Err(form()),
         };
         let (from, to) = (number(from)?, number(to)?);
-        let count = count.parse().map_err(|_| AxisError::Count(count.to_owned()))?;
+        let count = count
+            .parse()
+            .map_err(|_| AxisError::Count(count.to_owned()))?;
         match spacing {
             "lin" | "linear" => Self::linear(name, from, to, count),
             "log" | "logarithmic" => Self::logarithmic(name, from, to, count),
@@ -268,7 +282,10 @@ mod tests {
         assert_eq!((range.name(), range.values().len()), ("zeta", 4));
         assert_eq!(range.ends(), [0.01, 0.07]);
         assert_eq!(axis("zeta=0.01:0.07:4:lin").unwrap(), range);
-        assert_eq!(axis(" zeta = 3 , -1,2e0").unwrap().values(), [3.0, -1.0, 2.0]);
+        assert_eq!(
+            axis(" zeta = 3 , -1,2e0").unwrap().values(),
+            [3.0, -1.0, 2.0]
+        );
         for wrong in [
             "zeta",
             "zeta=1:2",
@@ -294,16 +311,25 @@ mod tests {
     fn equal_ratios_lead_from_one_end_to_the_other() {
         let decades = axis("gamma=1e-2:1e9:12:log").unwrap();
         for (value, exponent) in decades.values().iter().zip(-2..) {
-            assert!((value / 10_f64.powi(exponent) - 1.0).abs() < 1e-15, "{value}");
+            assert!(
+                (value / 10_f64.powi(exponent) - 1.0).abs() < 1e-15,
+                "{value}"
+            );
         }
         let falling = axis("start=-2:-1e-3:7:log").unwrap();
         assert_eq!(falling.ends(), [-2.0, -1e-3]);
         let ratios = falling.values().windows(2).map(|pair| pair[1] / pair[0]);
         for ratio in ratios {
-            assert!((ratio / 5e-4_f64.powf(1.0 / 6.0) - 1.0).abs() < 1e-14, "{ratio}");
+            assert!(
+                (ratio / 5e-4_f64.powf(1.0 / 6.0) - 1.0).abs() < 1e-14,
+                "{ratio}"
+            );
         }
         for wrong in ["speed=-1:1:3:log", "mu=0:1e5:3:log", "mu=1e5:-0:3:log"] {
-            assert!(matches!(axis(wrong), Err(AxisError::NoRatio { .. })), "{wrong}");
+            assert!(
+                matches!(axis(wrong), Err(AxisError::NoRatio { .. })),
+                "{wrong}"
+            );
         }
     }
 
@@ -316,7 +342,10 @@ mod tests {
             "mu=3:3:2:log",
             "mu=1:1.0000000000000002:9",
         ] {
-            assert!(matches!(axis(wrong), Err(AxisError::Twice { .. })), "{wrong}");
+            assert!(
+                matches!(axis(wrong), Err(AxisError::Twice { .. })),
+                "{wrong}"
+            );
         }
     }
 }

@@ -5,7 +5,8 @@
 //! sin y = y - y^3/3! + ... + y^17/17!,   cos y = 1 - y^2/2! + ... + y^16/16!:   what is left out is below 2^-58
 //! ```
 //!
-//! A processor computes several only where no function is called for each; and the same on every processor.
+//! A processor computes several only where no function is called for each; and the same on every
+//! processor.
 
 use std::f64::consts::FRAC_2_PI;
 
@@ -82,7 +83,8 @@ pub(super) fn sine_and_cosine(angle: f64) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    /// They are those of the standard library to the last digit, in every quadrant, next to its ends, and for any number.
+    /// They are those of the standard library to the last digit, in every quadrant, next to its
+    /// ends, and for any number.
     #[test]
     fn they_are_sine_and_cosine() {
         let steps = (-40_000..40_000).map(|step| f64::from(step) * 0.013);

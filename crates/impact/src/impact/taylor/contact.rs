@@ -30,7 +30,11 @@ impl ContactStep<'_> {
 }
 
 /// The part of a step of this length that takes so long: its length, and its values at the end.
-pub(super) fn cut([place, velocity, time]: [&[f64]; 3], remaining: f64, (length, whole): (f64, End)) -> (f64, End) {
+pub(super) fn cut(
+    [place, velocity, time]: [&[f64]; 3],
+    remaining: f64,
+    (length, whole): (f64, End),
+) -> (f64, End) {
     let h = crossing_of(|u| value(time, u) - remaining, 0.0, length);
     let end = End {
         place: value(place, h),
@@ -140,11 +144,21 @@ impl Runner {
         self.t = if last && end == h {
             self.settings.duration
         } else {
-            start + if end == h { whole.time } else { value(time, end) }.max(0.0)
+            start
+                + if end == h {
+                    whole.time
+                } else {
+                    value(time, end)
+                }
+                .max(0.0)
         };
         if self.settings.keep_path {
-            self.path
-                .push_series([start, self.t], (self.regime, Some(barrier)), end, [w, v, time]);
+            self.path.push_series(
+                [start, self.t],
+                (self.regime, Some(barrier)),
+                end,
+                [w, v, time],
+            );
         }
         if let Some(impact) = self.impacts.last_mut() {
             impact.penetration = impact.penetration.max(deepest);
@@ -157,13 +171,28 @@ impl Runner {
         self.go_on(&step, event);
     }
 
-    /// Notes the turning points of a step and finds where it ends by them: where, why, and the greatest depth until there.
-    fn turns_and_release(&mut self, step: &ContactStep, h: f64, whole: End) -> (f64, Option<Event>, f64) {
+    /// Notes the turning points of a step and finds where it ends by them: where, why, and the
+    /// greatest depth until there.
+    fn turns_and_release(
+        &mut self,
+        step: &ContactStep,
+        h: f64,
+        whole: End,
+    ) -> (f64, Option<Event>, f64) {
         let turns = turning_points(step.v, h, whole);
         let (mut from, mut w_from) = (0.0, step.w[0]);
         let mut deepest = 0.0_f64;
-        for (to, turning) in turns.as_slice().iter().map(|turn| (*turn, true)).chain([(h, false)]) {
-            let w_to = if turning { value(step.w, to) } else { whole.place };
+        for (to, turning) in turns
+            .as_slice()
+            .iter()
+            .map(|turn| (*turn, true))
+            .chain([(h, false)])
+        {
+            let w_to = if turning {
+                value(step.w, to)
+            } else {
+                whole.place
+            };
             if w_to <= 0.0 && to > 0.0 {
                 let release = if w_from > 0.0 && w_to < 0.0 {
                     bracketed(step.w, 0.0, (from, w_from), (to, w_to))
@@ -187,7 +216,8 @@ impl Runner {
         (h, None, deepest)
     }
 
-    /// Where in a step that ends at `end` the barrier would begin to pull: gamma + mu v stays positive.
+    /// Where in a step that ends at `end` the barrier would begin to pull: gamma + mu v stays
+    /// positive.
     fn detachment(&self, v: &[f64], end: f64) -> Option<f64> {
         let Model { gamma, mu, .. } = self.model;
         if mu <= 0.0 || v[0] - variation(v, end) >= -gamma / mu {
@@ -241,9 +271,14 @@ impl Runner {
         self.press(side, 0.0, speed);
     }
 
-    /// Goes over to the equation of the contact after free flight from rest on the barrier, which has taken this time
-    /// and ends at this depth and speed.
-    pub(super) fn begin_contact_from_rest(&mut self, side: Side, time: f64, [depth, speed]: [f64; 2]) {
+    /// Goes over to the equation of the contact after free flight from rest on the barrier, which
+    /// has taken this time and ends at this depth and speed.
+    pub(super) fn begin_contact_from_rest(
+        &mut self,
+        side: Side,
+        time: f64,
+        [depth, speed]: [f64; 2],
+    ) {
         let force = self.model.contact(depth, speed);
         // d ~ t^k.
         let power = 1.5 * speed * time / depth;
@@ -265,15 +300,20 @@ impl Runner {
         self.base = side.sign() * barrier;
         self.velocity = speed;
         self.set_angle(barrier + side.sign() * w * w);
-        // The time of a Hertz contact in s: its greatest depth is that at which the barrier stores all the energy,
-        // v^2/2 = (2/5) gamma d^(5/2), w = sqrt(d), dw/ds = v/2.
+        // The time of a Hertz contact in s: its greatest depth is that at which the barrier stores
+        // all the energy, v^2/2 = (2/5) gamma d^(5/2), w = sqrt(d), dw/ds = v/2.
         let reached = hertz::greatest_depth(self.model.gamma, speed).max(w * w);
         let fastest = (speed * speed + 2.0 * self.model.elastic_energy(w * w)).sqrt();
         self.hertz = [reached.sqrt(), fastest];
-        // That of the other forces: dw/ds = v/2, dv/ds = w F. At a barrier near plumb there is next to none.
+        // That of the other forces: dw/ds = v/2, dv/ds = w F. At a barrier near plumb there is next
+        // to none.
         let others = self.sine.abs() + self.model.alpha + self.model.beta.abs();
         let unit = (reached.sqrt() / fastest).min((2.0 / others).sqrt());
-        self.unit = if unit.is_finite() && unit > 0.0 { unit } else { 1.0 };
+        self.unit = if unit.is_finite() && unit > 0.0 {
+            unit
+        } else {
+            1.0
+        };
     }
 
     /// Contact ends at this velocity.

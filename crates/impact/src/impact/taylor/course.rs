@@ -1,8 +1,8 @@
-//! The course of a step where it is plain: at most one turning point, and at most one crossing of a bound after or before it,
-//! found for several motions side by side.
+//! The course of a step where it is plain: at most one turning point, and at most one crossing of a
+//! bound after or before it, found for several motions side by side.
 //!
-//! The bounds of x are the barriers; the bound of w, in contact, is 0. What is not plain is looked at motion by motion, by
-//! `flight` and `contact`, which come to the same numbers where it is.
+//! The bounds of x are the barriers; the bound of w, in contact, is 0. What is not plain is looked
+//! at motion by motion, by `flight` and `contact`, which come to the same numbers where it is.
 
 use super::series::{Coefficients, Ends, Inputs};
 use super::{Equation, VANISHING};
@@ -113,7 +113,8 @@ pub(super) fn courses<const L: usize>(
             let opposite = inputs.velocity[lane] * ends.velocity[lane] < 0.0;
             let same = inputs.velocity[lane] * ends.velocity[lane] > 0.0;
             courses.turns[lane] = may_turn[lane] & (changes[lane] == 1.0) & opposite;
-            courses.plain[lane] = courses.turns[lane] | !may_turn[lane] | (changes[lane] == 0.0) & same;
+            courses.plain[lane] =
+                courses.turns[lane] | !may_turn[lane] | (changes[lane] == 0.0) & same;
         }
     }
     if courses.turns.contains(&true) {
@@ -141,10 +142,17 @@ pub(super) fn courses<const L: usize>(
     }
     let mut level = [0.0; L];
     for lane in 0..L {
-        let (rises, falls) = (goal[lane] > inputs.upper[lane], goal[lane] < inputs.lower[lane]);
+        let (rises, falls) = (
+            goal[lane] > inputs.upper[lane],
+            goal[lane] < inputs.lower[lane],
+        );
         courses.rises[lane] = rises;
         courses.crosses[lane] = rises | falls;
-        level[lane] = if rises { inputs.upper[lane] } else { inputs.lower[lane] };
+        level[lane] = if rises {
+            inputs.upper[lane]
+        } else {
+            inputs.lower[lane]
+        };
         let inside = (start[lane] < inputs.upper[lane]) & (start[lane] > inputs.lower[lane]);
         let at_bound = (goal[lane] == inputs.upper[lane]) | (goal[lane] == inputs.lower[lane]);
         courses.plain[lane] &= !at_bound & (inside | !courses.crosses[lane]);
@@ -154,9 +162,18 @@ pub(super) fn courses<const L: usize>(
             start[lane] -= level[lane];
             goal[lane] -= level[lane];
         }
-        let crossing = crossings(place, &level, (&from, &start), (&to, &goal), &courses.crosses);
+        let crossing = crossings(
+            place,
+            &level,
+            (&from, &start),
+            (&to, &goal),
+            &courses.crosses,
+        );
         courses.crossing.at = crossing;
-        [courses.crossing.place, courses.crossing.velocity, courses.crossing.time] =
-            series.values(&crossing, order, equation);
+        [
+            courses.crossing.place,
+            courses.crossing.velocity,
+            courses.crossing.time,
+        ] = series.values(&crossing, order, equation);
     }
 }

@@ -1,12 +1,14 @@
 //! Equation (7) as it is followed: in free flight by time, in contact by a variable of its own.
 //!
-//! In time the contact force (x - x_r)^(3/2) is not analytic at the touch; with x = x_r + w^2 and dt = w ds it is a polynomial in w, and touch
-//! and release are simple zeros of w, however slow the touch. (The change of variable is that of Levi-Civita and Sundman for
-//! collisions; the recurrences: A. Jorba and M. Zou, *Experimental Math.* 14 (2005) 99.) A left barrier is a right one seen in a mirror:
-//! x, v, beta and the direction of friction change sign.
+//! In time the contact force (x - x_r)^(3/2) is not analytic at the touch; with x = x_r + w^2 and
+//! dt = w ds it is a polynomial in w, and touch and release are simple zeros of w, however slow the
+//! touch. (The change of variable is that of Levi-Civita and Sundman for collisions; the
+//! recurrences: A. Jorba and M. Zou, *Experimental Math.* 14 (2005) 99.) A left barrier is a right
+//! one seen in a mirror: x, v, beta and the direction of friction change sign.
 //!
-//! `recurrences` is written from these lines, by [`Equations::to_rust`]; the test below holds the one against the other, and writes the file anew
-//! where they differ. A force is one more term here.
+//! `recurrences` is written from these lines, by [`Equations::to_rust`]; the test below holds the
+//! one against the other, and writes the file anew where they differ. A force is one more term
+//! here.
 
 use crate::series::written::Equations;
 
@@ -90,7 +92,10 @@ pub(super) const CONTACT: Equations = Equations {
 };
 
 /// Where they are written to.
-const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src/impact/taylor/recurrences.rs");
+const FILE: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/src/impact/taylor/recurrences.rs"
+);
 
 const HEAD: &str = "//! The series of a step of equation (7). Written from the lines in `equations` by its test: a change here is lost.
 
@@ -112,18 +117,24 @@ mod tests {
     use crate::series::recurrence::Recurrences;
     use crate::symbol::Symbol;
 
-    /// What is compiled is what the lines above say. Layout aside, which the formatter has its own mind about.
+    /// What is compiled is what the lines above say. Layout aside, which the formatter has its own
+    /// mind about.
     #[test]
     fn what_is_compiled_is_written_from_the_equations() {
-        let functions = [&FLIGHT, &CONTACT].map(|equations| equations.to_rust().expect(equations.name));
+        let functions =
+            [&FLIGHT, &CONTACT].map(|equations| equations.to_rust().expect(equations.name));
         let source = format!("{HEAD}\n{}\n{}", functions[0], functions[1]);
         let plain = |text: &str| {
             let text: String = text.split_whitespace().collect();
-            text.replace(",)", ")").replace(",]", "]").replace(",}", "}")
+            text.replace(",)", ")")
+                .replace(",]", "]")
+                .replace(",}", "}")
         };
         if plain(&std::fs::read_to_string(FILE).unwrap_or_default()) != plain(&source) {
             std::fs::write(FILE, source).expect(FILE);
-            panic!("{FILE} was not what follows from the equations; it is written anew: `cargo fmt`, and test again");
+            panic!(
+                "{FILE} was not what follows from the equations; it is written anew: `cargo fmt`, and test again"
+            );
         }
     }
 
@@ -153,7 +164,8 @@ mod tests {
         }
     }
 
-    /// The series of a system of equations as written, by the recurrences of their expressions: state by state.
+    /// The series of a system of equations as written, by the recurrences of their expressions:
+    /// state by state.
     fn by_expressions(
         states: &[(&str, f64)],
         rates: &[&str],
@@ -175,12 +187,18 @@ mod tests {
             number("p", [p / unit]),
             number("q", [q / (unit * unit)]),
         ]);
-        let variables: Vec<(Symbol, Option<usize>)> =
-            states.iter().map(|(name, _)| (Symbol::from(*name), None)).collect();
+        let variables: Vec<(Symbol, Option<usize>)> = states
+            .iter()
+            .map(|(name, _)| (Symbol::from(*name), None))
+            .collect();
         let mut recurrences = Recurrences::new(&variables, &numbers, ORDER);
         let rates: Vec<usize> = rates
             .iter()
-            .map(|text| recurrences.add(&parse_expression(text).expect(text)).expect(text))
+            .map(|text| {
+                recurrences
+                    .add(&parse_expression(text).expect(text))
+                    .expect(text)
+            })
             .collect();
         let mut tape = recurrences.into_tape();
         for (place, (_, value)) in states.iter().enumerate() {
@@ -192,11 +210,15 @@ mod tests {
                 tape.feed(place, *rate, order, inputs.unit[0]);
             }
         }
-        (0..states.len()).map(|place| tape.series(place).to_vec()).collect()
+        (0..states.len())
+            .map(|place| tape.series(place).to_vec())
+            .collect()
     }
 
     fn assert_same(own: &Series<1>, other: &[f64], what: &str) {
-        let size = other.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+        let size = other
+            .iter()
+            .fold(0.0_f64, |size, value| size.max(value.abs()));
         for (n, (own, other)) in own.iter().zip(other).enumerate() {
             assert!(
                 (own[0] - other).abs() <= 1e-13 * (other.abs() + 1e-3 * size),
@@ -206,7 +228,8 @@ mod tests {
         }
     }
 
-    /// What stands in this file by hand is what follows from the equations of its head as expressions, coefficient by coefficient.
+    /// What stands in this file by hand is what follows from the equations of its head as
+    /// expressions, coefficient by coefficient.
     #[test]
     fn the_series_are_those_of_the_expressions() {
         for bits in 0..8 {

@@ -1,4 +1,5 @@
-//! Free flight: what ends a step of it, a touch at the barrier, the onset of a contact from rest on it, a turning point.
+//! Free flight: what ends a step of it, a touch at the barrier, the onset of a contact from rest on
+//! it, a turning point.
 
 use super::contact::cut;
 use super::{Event, LIGHT, Loaded, MOST_IDLE, Runner, SLOWEST_TOUCH, turning_points};
@@ -12,7 +13,12 @@ use crate::impact::taylor::series::{End, HIGHEST_ORDER, TIME_TERMS};
 
 impl Runner {
     /// Takes a step of free flight with a plain course, if nothing else ends it.
-    pub(super) fn fly_on(&mut self, end: End, course: Course, load: impl FnOnce() -> Loaded) -> bool {
+    pub(super) fn fly_on(
+        &mut self,
+        end: End,
+        course: Course,
+        load: impl FnOnce() -> Loaded,
+    ) -> bool {
         if self.settings.duration - self.t <= end.time {
             return false;
         }
@@ -41,12 +47,14 @@ impl Runner {
             });
         }
         let start = self.t;
-        let (at, time) = touched.map_or((self.length, end.time), |(_, point)| (point.at, point.time));
+        let (at, time) =
+            touched.map_or((self.length, end.time), |(_, point)| (point.at, point.time));
         self.t = start + time;
         if self.settings.keep_path {
             let [x, v, time] = load();
             let series = [&x[..=self.order], &v[..=self.order], &time[..TIME_TERMS]];
-            self.path.push_series([start, self.t], (self.regime, None), at, series);
+            self.path
+                .push_series([start, self.t], (self.regime, None), at, series);
         }
         (self.place, self.velocity, self.sine, self.cosine) = (x, velocity, sine, cosine);
         match touched {
@@ -90,7 +98,11 @@ impl Runner {
             (sine, cosine) = sine_and_cosine(x_end);
         }
         let start = self.t;
-        let elapsed = if end == h { whole.time } else { value(time, end) };
+        let elapsed = if end == h {
+            whole.time
+        } else {
+            value(time, end)
+        };
         self.t = if last && end == h {
             self.settings.duration
         } else {
@@ -101,7 +113,8 @@ impl Runner {
                 Some(Event::Onset(side)) => Regime::Contact(side),
                 _ => self.regime,
             };
-            self.path.push_series([start, self.t], (state, None), end, [x, v, time]);
+            self.path
+                .push_series([start, self.t], (state, None), end, [x, v, time]);
         }
         (self.place, self.velocity, self.sine, self.cosine) = (x_end, v_end, sine, cosine);
         self.adapt();
@@ -111,7 +124,9 @@ impl Runner {
                 self.velocity = 0.0;
                 self.turn();
             }
-            Some(Event::Touch(side)) if v_end.abs() > SLOWEST_TOUCH => self.touch(side, side.sign() * v_end),
+            Some(Event::Touch(side)) if v_end.abs() > SLOWEST_TOUCH => {
+                self.touch(side, side.sign() * v_end)
+            }
             Some(Event::Onset(side)) => {
                 let depth = side.sign() * rise(x, end);
                 enter(
@@ -144,15 +159,25 @@ impl Runner {
     }
 
     /// What ends a free flight before `h`, and where. Turning points on the way are noted.
-    fn flight_event(&mut self, [x, v, time]: [&[f64]; 3], h: f64, end: End) -> (f64, Option<Event>) {
+    fn flight_event(
+        &mut self,
+        [x, v, time]: [&[f64]; 3],
+        h: f64,
+        end: End,
+    ) -> (f64, Option<Event>) {
         let turns = turning_points(v, h, end);
         let (mut from, mut x_from) = (0.0, x[0]);
-        let ends = turns.as_slice().iter().map(|turn| (*turn, true)).chain([(h, false)]);
+        let ends = turns
+            .as_slice()
+            .iter()
+            .map(|turn| (*turn, true))
+            .chain([(h, false)]);
         for (to, turning) in ends {
             let x_to = if turning { value(x, to) } else { end.place };
             for side in [Side::Right, Side::Left] {
                 let sign = side.sign();
-                // At rest on the barrier: which way it goes is in the change of x alone, not in x - x_r.
+                // At rest on the barrier: which way it goes is in the change of x alone, not in x -
+                // x_r.
                 if from == 0.0 && v[0] == 0.0 && self.model.barrier(side) == Some(x[0]) {
                     if sign * rise(x, to) > 0.0 {
                         return (self.onset(side, [x, v, time], to), Some(Event::Onset(side)));
@@ -170,7 +195,8 @@ impl Runner {
                     if sign * value(v, touch) > 0.0 {
                         return (touch, Some(Event::Touch(side)));
                     }
-                    // Beyond it by more than rounding, and yet no speed: it turned on the barrier and is pushed in.
+                    // Beyond it by more than rounding, and yet no speed: it turned on the barrier
+                    // and is pushed in.
                     if sign * (x_to - barrier) > 8.0 * f64::EPSILON * barrier.abs().max(1.0) {
                         return (touch, Some(Event::Settle(side)));
                     }
@@ -190,7 +216,8 @@ impl Runner {
         (h, None)
     }
 
-    /// What ends the flight away from a barrier that is still behind: back in place, or as fast as the barrier.
+    /// What ends the flight away from a barrier that is still behind: back in place, or as fast as
+    /// the barrier.
     fn detached_event(&mut self, side: Side, x: &[f64], v: &[f64], h: f64) -> (f64, Option<Event>) {
         let barrier = self.model.barrier(side).unwrap_or_default();
         let sign = side.sign();
@@ -210,8 +237,8 @@ impl Runner {
         (catch, catches.as_slice().first().map(|_| Event::Reattach))
     }
 
-    /// How far a motion that moves into the barrier from rest on it, and does so at least until `to`, may go before the
-    /// contact force counts.
+    /// How far a motion that moves into the barrier from rest on it, and does so at least until
+    /// `to`, may go before the contact force counts.
     fn onset(&self, side: Side, [x, v, time]: [&[f64]; 3], to: f64) -> f64 {
         let mut u = to;
         // Each time the part of the force shrinks by 4^4 or more.

@@ -1,4 +1,5 @@
-//! Coulomb friction at a turning point: it lets the motion go on, or holds it until the excitation tears it loose.
+//! Coulomb friction at a turning point: it lets the motion go on, or holds it until the excitation
+//! tears it loose.
 
 use super::Runner;
 use crate::impact::simulation::Regime;
@@ -31,7 +32,10 @@ impl Runner {
     fn wait(&mut self) {
         let (start, x, _) = self.now();
         let field = self.force_at_rest() - self.model.field(start, x) - x.sin();
-        let (release, direction) = self.model.release(start, x, field).unwrap_or((f64::INFINITY, 0.0));
+        let (release, direction) = self
+            .model
+            .release(start, x, field)
+            .unwrap_or((f64::INFINITY, 0.0));
         let end = release.min(self.settings.duration);
         if self.settings.keep_path && end > start {
             self.path.push_rest([start, end], x);

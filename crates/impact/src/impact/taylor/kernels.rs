@@ -5,7 +5,8 @@
 //! z' = y'/b:   n z_n b_0 = n y_n - sum_(0<k<n) k z_k b_(n-k)
 //! ```
 //!
-//! The slope y' is stored one place down: n y_n in the place of y_(n-1). A coefficient costs n multiplications, half of them for a square.
+//! The slope y' is stored one place down: n y_n in the place of y_(n-1). A coefficient costs n
+//! multiplications, half of them for a square.
 
 use super::series::{HIGHEST_ORDER, Series};
 use super::stretch::stretched;
@@ -13,10 +14,15 @@ use super::stretch::stretched;
 /// Motions in one register of 256 bits.
 const REGISTER: usize = 4;
 
-/// (a b)_n, asked for in rising order: an even n is computed together with what is known of the next, so that every coefficient is
-/// read once for both.
+/// (a b)_n, asked for in rising order: an even n is computed together with what is known of the
+/// next, so that every coefficient is read once for both.
 #[inline(always)]
-pub(super) fn product<const L: usize>(a: &Series<L>, b: &Series<L>, n: usize, ahead: &mut [f64; L]) -> [f64; L] {
+pub(super) fn product<const L: usize>(
+    a: &Series<L>,
+    b: &Series<L>,
+    n: usize,
+    ahead: &mut [f64; L],
+) -> [f64; L] {
     let mut sum = [0.0; L];
     if n % 2 == 1 {
         for lane in 0..L {
@@ -55,7 +61,11 @@ pub(super) fn products<const L: usize>(
         return sums;
     }
     let mut next = [[0.0; L]; 2];
-    for ((low, high), (b, c)) in a[..n].iter().zip(&a[1..=n]).zip(b[1..=n].iter().zip(&c[1..=n]).rev()) {
+    for ((low, high), (b, c)) in a[..n]
+        .iter()
+        .zip(&a[1..=n])
+        .zip(b[1..=n].iter().zip(&c[1..=n]).rev())
+    {
         // A register at a time: so that the sums stay in theirs.
         for first in (0..L).step_by(REGISTER) {
             let last = L.min(first + REGISTER);
@@ -77,9 +87,15 @@ pub(super) fn products<const L: usize>(
     sums
 }
 
-/// (a b)_n likewise where one is the other times a constant: half the terms are like the other half.
+/// (a b)_n likewise where one is the other times a constant: half the terms are like the other
+/// half.
 #[inline(always)]
-pub(super) fn symmetric<const L: usize>(a: &Series<L>, b: &Series<L>, n: usize, ahead: &mut [f64; L]) -> [f64; L] {
+pub(super) fn symmetric<const L: usize>(
+    a: &Series<L>,
+    b: &Series<L>,
+    n: usize,
+    ahead: &mut [f64; L],
+) -> [f64; L] {
     let mut sum = [0.0; L];
     let half = n / 2;
     if n % 2 == 1 {
@@ -151,7 +167,8 @@ pub(super) fn sine_and_cosine<const L: usize>(
     }
 }
 
-/// The next coefficients of sine and cosine of a phase that grows like time; `factor` is its rate over n, in the unit of the step.
+/// The next coefficients of sine and cosine of a phase that grows like time; `factor` is its rate
+/// over n, in the unit of the step.
 #[inline(always)]
 pub(super) fn waves_of_time<const L: usize>(
     [sine, cosine]: [&mut Series<L>; 2],
@@ -159,7 +176,10 @@ pub(super) fn waves_of_time<const L: usize>(
     factor: &[f64; L],
     n: usize,
 ) {
-    let (up, down) = (stretched(stretch, cosine, n - 1), stretched(stretch, sine, n - 1));
+    let (up, down) = (
+        stretched(stretch, cosine, n - 1),
+        stretched(stretch, sine, n - 1),
+    );
     for lane in 0..L {
         sine[n][lane] = factor[lane] * up[lane];
         cosine[n][lane] = -factor[lane] * down[lane];
@@ -188,7 +208,11 @@ pub(super) fn quotient<const L: usize>(
 
 /// Time itself, all of it.
 #[inline(always)]
-pub(super) fn time<const L: usize>(series: &mut Series<L>, unit: &[f64; L], [p, q]: &[[f64; L]; 2]) {
+pub(super) fn time<const L: usize>(
+    series: &mut Series<L>,
+    unit: &[f64; L],
+    [p, q]: &[[f64; L]; 2],
+) {
     series[1] = *unit;
     series[2] = each(|lane| INVERSE[2] * unit[lane] * p[lane]);
     series[3] = each(|lane| INVERSE[3] * unit[lane] * q[lane]);

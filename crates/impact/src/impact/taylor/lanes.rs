@@ -1,8 +1,8 @@
 //! Several runs side by side on one core: eight motions share each instruction of the series.
 //!
-//! Each run is in a phase of its own, so a pool of them is kept, and at every turn eight that want the same series get
-//! it together. The lanes never touch each other and no operation is fused or reordered: a run gives bit for bit what it
-//! gives alone, whatever runs beside it.
+//! Each run is in a phase of its own, so a pool of them is kept, and at every turn eight that want
+//! the same series get it together. The lanes never touch each other and no operation is fused or
+//! reordered: a run gives bit for bit what it gives alone, whatever runs beside it.
 
 use pulp::{Arch, Simd, WithSimd};
 
@@ -15,10 +15,12 @@ use super::{Equation, Runner};
 /// Motions in one instruction: a register of 512 bits, or two or four smaller ones.
 const LANES: usize = 8;
 
-/// Runs under way at once: so many that eight of them always want the same series, and so few that they stay in the cache.
+/// Runs under way at once: so many that eight of them always want the same series, and so few that
+/// they stay in the cache.
 const POOL: usize = 16;
 
-/// The series of one group; always compiled into its caller, so that it gets the widest registers there are.
+/// The series of one group; always compiled into its caller, so that it gets the widest registers
+/// there are.
 struct Expansion<'a> {
     inputs: &'a Inputs<LANES>,
     order: usize,
@@ -63,13 +65,26 @@ impl WithSimd for Evaluation<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let (step, ends) = ((self.order, self.equation), self.ends);
-        *ends = self.series.ends(self.inputs, self.lengths, self.order, self.equation);
-        courses(self.series, step, self.inputs, self.lengths, ends, self.courses);
+        *ends = self
+            .series
+            .ends(self.inputs, self.lengths, self.order, self.equation);
+        courses(
+            self.series,
+            step,
+            self.inputs,
+            self.lengths,
+            ends,
+            self.courses,
+        );
     }
 }
 
-/// The places of the next group, from the longer of the two queues: how many they are, and which series they want.
-fn next_group(flights: &mut Vec<usize>, contacts: &mut Vec<usize>) -> ([usize; LANES], usize, Equation) {
+/// The places of the next group, from the longer of the two queues: how many they are, and which
+/// series they want.
+fn next_group(
+    flights: &mut Vec<usize>,
+    contacts: &mut Vec<usize>,
+) -> ([usize; LANES], usize, Equation) {
     let (queue, equation) = if flights.len() >= contacts.len() {
         (flights, Equation::Flight)
     } else {
@@ -86,8 +101,12 @@ fn next_group(flights: &mut Vec<usize>, contacts: &mut Vec<usize>) -> ([usize; L
     (group, count, equation)
 }
 
-/// Follows every run to its end, and hands each over as it ends, with its number. All have the same tolerance.
-pub(in crate::impact) fn follow(runs: impl Iterator<Item = Runner>, mut done: impl FnMut(usize, Runner)) {
+/// Follows every run to its end, and hands each over as it ends, with its number. All have the same
+/// tolerance.
+pub(in crate::impact) fn follow(
+    runs: impl Iterator<Item = Runner>,
+    mut done: impl FnMut(usize, Runner),
+) {
     let arch = Arch::new();
     let mut waiting = runs.enumerate();
     let mut pool: Vec<(usize, Runner)> = Vec::with_capacity(POOL);
@@ -158,7 +177,9 @@ pub(in crate::impact) fn follow(runs: impl Iterator<Item = Runner>, mut done: im
         });
         for (lane, &place) in group[..count].iter().enumerate() {
             if let Some((_, runner)) = pool.get_mut(place) {
-                runner.advance(ends.lane(lane), courses.lane(lane), || series.lane(order, lane));
+                runner.advance(ends.lane(lane), courses.lane(lane), || {
+                    series.lane(order, lane)
+                });
             }
             fresh.push(place);
         }

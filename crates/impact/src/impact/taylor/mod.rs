@@ -1,8 +1,8 @@
 //! One run by Taylor series: how far a step reaches, what happens in it, and what comes next.
 //!
-//! In: a model, a start and settings that have been checked. Out: a [`Simulation`], from one run alone (`alone`) or from
-//! eight side by side (`lanes`), the same to the last bit. The coefficients of a step come from `recurrences`, which is written
-//! from `equations`.
+//! In: a model, a start and settings that have been checked. Out: a [`Simulation`], from one run
+//! alone (`alone`) or from eight side by side (`lanes`), the same to the last bit. The coefficients
+//! of a step come from `recurrences`, which is written from `equations`.
 //!
 //! ```text
 //! step:    (h/r)^(p+1) <= tolerance, 1/r = max |v_n|^(1/n) over the last coefficients of the velocity, n = p-4 ... p
@@ -15,11 +15,12 @@
 //! stick:   v = 0 and |all other forces| <= alpha, until they exceed it
 //! ```
 //!
-//! A [`Runner`] says which series it needs next ([`Runner::wants`], [`Runner::inputs`]) and is given its coefficients
-//! ([`Runner::advance`]); who computes them, for one motion or for several side by side, it does not know. What happens in most
-//! steps, a turning point and a touch or a release, is found side by side too, in `course`; what else may end a step stands in
-//! `flight` and `contact`, what dry friction does at a turning point in `friction`, the length of a step in `step` and `stretch`, sine and
-//! cosine for several motions in `angle`.
+//! A [`Runner`] says which series it needs next ([`Runner::wants`], [`Runner::inputs`]) and is
+//! given its coefficients ([`Runner::advance`]); who computes them, for one motion or for several
+//! side by side, it does not know. What happens in most steps, a turning point and a touch or a
+//! release, is found side by side too, in `course`; what else may end a step stands in `flight` and
+//! `contact`, what dry friction does at a turning point in `friction`, the length of a step in
+//! `step` and `stretch`, sine and cosine for several motions in `angle`.
 
 mod angle;
 mod contact;
@@ -40,8 +41,8 @@ use std::f64::consts::FRAC_2_PI;
 use super::model::{Friction, Model, Side, Start};
 use super::polynomial::{Roots, near_sign_changes};
 use super::simulation::{
-    Contact, Integrator, Path, REST_FRACTION, Regime, Settings, Simulation, Stop, Turn, enter, first_swing, has_rested,
-    scaled,
+    Contact, Integrator, Path, REST_FRACTION, Regime, Settings, Simulation, Stop, Turn, enter,
+    first_swing, has_rested, scaled,
 };
 use angle::sine_and_cosine;
 use course::{Course, Courses, courses};
@@ -52,18 +53,20 @@ use step::step_lengths;
 /// The longest step in time, for a motion at rest has no scale of its own.
 const LONGEST_STEP: f64 = 2.0;
 
-/// The part of the tolerance that the first term left out may use up: from one contact to the next there are a dozen steps, whose
-/// errors add up, and each contact multiplies them.
+/// The part of the tolerance that the first term left out may use up: from one contact to the next
+/// there are a dozen steps, whose errors add up, and each contact multiplies them.
 const SAFETY: f64 = 0.01;
 
 /// The longest step in contact, in units of its own scale.
 const LONGEST_CONTACT_STEP: f64 = 64.0;
 
-/// The part of the velocity that the contact force may have taken when a contact that begins from rest is handed to the
-/// equation of the contact: its first order is taken off then, so what is left out is the square of it.
+/// The part of the velocity that the contact force may have taken when a contact that begins from
+/// rest is handed to the equation of the contact: its first order is taken off then, so what is
+/// left out is the square of it.
 const LIGHT: f64 = 1e-8;
 
-/// A touch slower than this is none: in contact the fourth power of w, the root of the depth, would be lost.
+/// A touch slower than this is none: in contact the fourth power of w, the root of the depth, would
+/// be lost.
 const SLOWEST_TOUCH: f64 = 1e-75;
 
 /// A speed that is none.
@@ -155,14 +158,21 @@ pub(super) fn alone(model: Model, start: Start, settings: Settings) -> Simulatio
         let [proposed] = step_lengths(&series.velocity, order, &inputs.size, &inputs.allowed);
         let length = runner.reach(proposed);
         let ends = series.ends(&inputs, &[length], order, equation);
-        courses(&series, (order, equation), &inputs, &[length], &ends, &mut found);
+        courses(
+            &series,
+            (order, equation),
+            &inputs,
+            &[length],
+            &ends,
+            &mut found,
+        );
         runner.advance(ends.lane(0), found.lane(0), || series.lane(order, 0));
     }
     runner.finish(start)
 }
 
-/// The fall to a tenth of the first swing, where that may be the rest and no path tells it: it is followed with its path, again or, for a
-/// chain, for once.
+/// The fall to a tenth of the first swing, where that may be the rest and no path tells it: it is
+/// followed with its path, again or, for a chain, for once.
 pub(super) fn fall(simulation: &Simulation) -> Option<f64> {
     let from = simulation.untold_fall()?;
     let start = match from.t > 0.0 {
@@ -186,8 +196,8 @@ pub(super) fn fall(simulation: &Simulation) -> Option<f64> {
     Some(from.t + fall)
 }
 
-/// The order of the series that suits a tolerance. Most of the work of a step is not that of its series, so long steps pay, and the
-/// order hardly depends on it.
+/// The order of the series that suits a tolerance. Most of the work of a step is not that of its
+/// series, so long steps pay, and the order hardly depends on it.
 fn order_for(tolerance: f64) -> usize {
     let digits = -tolerance.max(1e-18).log10();
     ((22.1 + 0.37 * digits) as usize).clamp(8, HIGHEST_ORDER)
@@ -212,7 +222,8 @@ impl Runner {
             velocity: start.velocity,
             sine: 0.0,
             cosine: 0.0,
-            angles: [model.left, model.right].map(|barrier| sine_and_cosine(barrier.unwrap_or_default())),
+            angles: [model.left, model.right]
+                .map(|barrier| sine_and_cosine(barrier.unwrap_or_default())),
             direction: 0.0,
             released: false,
             unit: 1.0,
@@ -239,7 +250,13 @@ impl Runner {
         }
         if let Some((side, depth)) = model.depth(start.x) {
             let speed = side.sign() * start.velocity;
-            enter(&mut runner.impacts, (&model, &settings), side, 0.0, [depth, speed]);
+            enter(
+                &mut runner.impacts,
+                (&model, &settings),
+                side,
+                0.0,
+                [depth, speed],
+            );
             match model.would_pull(speed) {
                 true => runner.regime = Regime::Detached(side),
                 false => runner.press(side, depth.sqrt(), speed),
@@ -353,7 +370,11 @@ impl Runner {
         } else {
             model.alpha * mirror * self.direction
         };
-        inputs.arctangent[lane] = if arctangent { FRAC_2_PI * model.alpha } else { 0.0 };
+        inputs.arctangent[lane] = if arctangent {
+            FRAC_2_PI * model.alpha
+        } else {
+            0.0
+        };
         inputs.viscous[lane] = 2.0 * model.zeta;
         inputs.beta[lane] = mirror * model.beta;
         inputs.eta[lane] = model.frequency_ratio;
@@ -376,12 +397,15 @@ impl Runner {
             Regime::Contact(_) => self.impacts.last().map_or(0.0, |impact| impact.speed_in),
             _ => self.place.abs(),
         };
-        let size = place.max(self.velocity.abs()).max(tolerance.absolute_tolerance);
+        let size = place
+            .max(self.velocity.abs())
+            .max(tolerance.absolute_tolerance);
         let allowed = SAFETY * (tolerance.absolute_tolerance + tolerance.relative_tolerance * size);
         (size, allowed)
     }
 
-    /// How far the step goes, in its unit, where the series reaches so far: it ends there if nothing happens before.
+    /// How far the step goes, in its unit, where the series reaches so far: it ends there if
+    /// nothing happens before.
     fn reach(&mut self, proposed: f64) -> f64 {
         self.proposed = proposed;
         let longest = match self.regime {
@@ -392,15 +416,17 @@ impl Runner {
         self.length
     }
 
-    /// Goes on with the series at the present moment: its values at the end of the step, and where they do not say
-    /// enough, its coefficients: x and v, or w, v and t.
+    /// Goes on with the series at the present moment: its values at the end of the step, and where
+    /// they do not say enough, its coefficients: x and v, or w, v and t.
     fn advance(&mut self, end: End, course: Option<Course>, load: impl Fn() -> Loaded) {
         let (before, turns) = (self.t, self.turns.len());
         if !(end.place.is_finite() && end.variation.is_finite()) {
             self.stop = Some(Stop::NotFinite { t: self.t });
             return;
         }
-        let contact = self.side().filter(|_| matches!(self.regime, Regime::Contact(_)));
+        let contact = self
+            .side()
+            .filter(|_| matches!(self.regime, Regime::Contact(_)));
         if contact.is_none() && self.t + end.time.min(self.settings.duration - self.t) <= self.t {
             self.stop = Some(Stop::StepTooSmall { t: self.t });
             return;
@@ -443,12 +469,15 @@ impl Runner {
 
     fn side(&self) -> Option<(Side, f64)> {
         match self.regime {
-            Regime::Contact(side) | Regime::Detached(side) => Some((side, self.model.barrier(side)?)),
+            Regime::Contact(side) | Regime::Detached(side) => {
+                Some((side, self.model.barrier(side)?))
+            }
             _ => None,
         }
     }
 
-    /// Ends the run where it is; turning points noted in the rest of the step are no longer part of it.
+    /// Ends the run where it is; turning points noted in the rest of the step are no longer part of
+    /// it.
     fn end_at_rest_energy(&mut self) {
         self.stop = Some(Stop::RestEnergy);
         while self.turns.last().is_some_and(|turn| turn.t > self.t) {

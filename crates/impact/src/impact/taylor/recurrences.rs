@@ -1,6 +1,9 @@
-//! The series of a step of equation (7). Written from the lines in `equations` by its test: a change here is lost.
+//! The series of a step of equation (7). Written from the lines in `equations` by its test: a
+//! change here is lost.
 
-use super::kernels::{INVERSE, each, product, quotient, sine_and_cosine, square, time, waves_of_time};
+use super::kernels::{
+    INVERSE, each, product, quotient, sine_and_cosine, square, time, waves_of_time,
+};
 use super::series::{Coefficients, HIGHEST_ORDER, Inputs, Terms};
 use super::stretch::{in_contact, in_flight, stretched, stretched_next};
 use crate::impact::model::STEEPNESS;
@@ -19,7 +22,12 @@ use crate::impact::model::STEEPNESS;
 /// t' = 1
 /// ```
 #[inline(always)]
-pub(super) fn flight<const L: usize>(inputs: &Inputs<L>, order: usize, terms: Terms, series: &mut Coefficients<L>) {
+pub(super) fn flight<const L: usize>(
+    inputs: &Inputs<L>,
+    order: usize,
+    terms: Terms,
+    series: &mut Coefficients<L>,
+) {
     let order = order.min(HIGHEST_ORDER);
     let stretch = in_flight(inputs);
     let Coefficients {
@@ -124,7 +132,12 @@ pub(super) fn flight<const L: usize>(inputs: &Inputs<L>, order: usize, terms: Te
 /// (v + viscous*depth)' = force
 /// ```
 #[inline(always)]
-pub(super) fn contact<const L: usize>(inputs: &Inputs<L>, order: usize, terms: Terms, series: &mut Coefficients<L>) {
+pub(super) fn contact<const L: usize>(
+    inputs: &Inputs<L>,
+    order: usize,
+    terms: Terms,
+    series: &mut Coefficients<L>,
+) {
     let order = order.min(HIGHEST_ORDER);
     let stretch = in_contact(inputs);
     let Coefficients {
@@ -227,6 +240,8 @@ pub(super) fn contact<const L: usize>(inputs: &Inputs<L>, order: usize, terms: T
             force = each(|lane| force[lane] - inputs.mu[lane] * v_fourth[lane]);
         }
         let force_stretched = stretched_next(&stretch, force, &mut force_before);
-        v[n + 1] = each(|lane| factor[lane] * force_stretched[lane] - inputs.viscous[lane] * depth[n + 1][lane]);
+        v[n + 1] = each(|lane| {
+            factor[lane] * force_stretched[lane] - inputs.viscous[lane] * depth[n + 1][lane]
+        });
     }
 }

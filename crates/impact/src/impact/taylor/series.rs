@@ -1,7 +1,8 @@
 //! What the series of a step start from, where they are kept, and their values at its end.
 //!
-//! Times are counted in a unit of choice, so that no coefficient over- or underflows, and stretched within a step (`stretch`). `L` motions
-//! go through the same operations side by side; each gets bit for bit what it would get alone.
+//! Times are counted in a unit of choice, so that no coefficient over- or underflows, and stretched
+//! within a step (`stretch`). `L` motions go through the same operations side by side; each gets
+//! bit for bit what it would get alone.
 
 use super::angle::sines_and_cosines;
 use super::kernels::each;
@@ -14,8 +15,8 @@ pub(super) const HIGHEST_ORDER: usize = 30;
 /// Coefficients of the time in flight.
 pub(super) const TIME_TERMS: usize = 4;
 
-/// How many of the last coefficients decide on the length of a step: a series may have gaps. At touch v is a series in
-/// s^5, for v' = -gamma w^4 and w' = v/2.
+/// How many of the last coefficients decide on the length of a step: a series may have gaps. At
+/// touch v is a series in s^5, for v' = -gamma w^4 and w' = v/2.
 pub(super) const LAST: usize = 5;
 
 /// Coefficients of a series, those of `L` motions side by side.
@@ -39,7 +40,8 @@ impl Terms {
     }
 }
 
-/// What the series of `L` motions start from: where they are now, and their parameters. In contact everything is seen in the mirror of its side.
+/// What the series of `L` motions start from: where they are now, and their parameters. In contact
+/// everything is seen in the mirror of its side.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct Inputs<const L: usize> {
@@ -103,8 +105,8 @@ impl<const L: usize> Inputs<L> {
 /// Series that no one reads but the equations.
 const SCRATCH: usize = 18;
 
-/// What a step is made of: two or three series, all but the first two scratch outside contact. No coefficient of eight lanes lies
-/// across two lines of the cache.
+/// What a step is made of: two or three series, all but the first two scratch outside contact. No
+/// coefficient of eight lanes lies across two lines of the cache.
 #[repr(align(64))]
 pub(super) struct Coefficients<const L: usize> {
     /// x in flight, w in contact.
@@ -113,8 +115,9 @@ pub(super) struct Coefficients<const L: usize> {
     /// Time since the start of the step.
     pub(super) time: Series<L>,
     pub(super) scratch: [Series<L>; SCRATCH],
-    /// What is known of the next coefficients of products, and of sines and cosines. They are kept here because as variables of the function they
-    /// make eight motions side by side slower by 8 %.
+    /// What is known of the next coefficients of products, and of sines and cosines. They are kept
+    /// here because as variables of the function they make eight motions side by side slower by 8
+    /// %.
     pub(super) ahead: [[f64; L]; SCRATCH],
     pub(super) ahead_of_waves: [[[f64; L]; 2]; 2],
 }
@@ -187,7 +190,10 @@ impl<const L: usize> Coefficients<L> {
     /// The series of one motion: x or w, v, t.
     pub(super) fn lane(&self, order: usize, lane: usize) -> Loaded {
         let mut own = [[0.0; HIGHEST_ORDER + 1]; 3];
-        for (own, all) in own.iter_mut().zip([&self.place, &self.velocity, &self.time]) {
+        for (own, all) in own
+            .iter_mut()
+            .zip([&self.place, &self.velocity, &self.time])
+        {
             for (coefficient, lanes) in own.iter_mut().zip(all).take(order + 1) {
                 *coefficient = lanes[lane];
             }
@@ -211,7 +217,13 @@ impl<const L: usize> Coefficients<L> {
 
     /// The values of the series where the steps end.
     #[inline(always)]
-    pub(super) fn ends(&self, inputs: &Inputs<L>, lengths: &[f64; L], order: usize, equation: Equation) -> Ends<L> {
+    pub(super) fn ends(
+        &self,
+        inputs: &Inputs<L>,
+        lengths: &[f64; L],
+        order: usize,
+        equation: Equation,
+    ) -> Ends<L> {
         let order = order.min(HIGHEST_ORDER);
         let [place, velocity, time] = self.values(lengths, order, equation);
         let angle = match equation {

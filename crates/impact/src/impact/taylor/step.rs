@@ -6,8 +6,8 @@ use super::series::{LAST, Series};
 /// 2^52: a number to whose last digits whole numbers below it can be added, and taken off again.
 const WHOLE_NUMBERS: f64 = 4_503_599_627_370_496.0;
 
-/// The longest steps at which the first term left out stays within what is allowed, by the radius of convergence that
-/// the last coefficients of the velocity tell: |v_n| ~ size / radius^n.
+/// The longest steps at which the first term left out stays within what is allowed, by the radius
+/// of convergence that the last coefficients of the velocity tell: |v_n| ~ size / radius^n.
 #[inline(always)]
 pub(super) fn step_lengths<const L: usize>(
     velocity: &Series<L>,
@@ -36,7 +36,8 @@ pub(super) fn step_lengths<const L: usize>(
     lengths
 }
 
-/// The logarithm to base 2, to two decimals, which is enough for a step: from the bits of the number.
+/// The logarithm to base 2, to two decimals, which is enough for a step: from the bits of the
+/// number.
 #[inline(always)]
 fn logarithm(number: f64) -> f64 {
     let bits = number.to_bits();
@@ -50,7 +51,11 @@ fn logarithm(number: f64) -> f64 {
 fn power(exponent: f64) -> f64 {
     // The integer below it, without a call: rounded first.
     let rounded = (exponent + 1.5 * WHOLE_NUMBERS) - 1.5 * WHOLE_NUMBERS;
-    let whole = if rounded > exponent { rounded - 1.0 } else { rounded };
+    let whole = if rounded > exponent {
+        rounded - 1.0
+    } else {
+        rounded
+    };
     let part = exponent - whole;
     let normal = if whole < -1022.0 { -1022.0 } else { whole };
     let normal = if normal > 1023.0 { 1023.0 } else { normal };

@@ -7,10 +7,11 @@
 //!           at 1.550 e^(i pi (2k+1)/5) from the touch, and the same seen from the release; the nearest two at 1.254 +- 0.911 i
 //! ```
 //!
-//! A series converges up to the nearest of them. A cubic polynomial t(r) or s(r) can move several of them outwards at once: the
-//! coefficients below were fitted to those by which a step of a tolerance of 1e-10 reaches furthest from each place. In contact that
-//! is up to 1.5 times as far, in flight up to 1.6. They decide about the length of the steps alone: the series are those of the
-//! equation in any variable, and a step is as long as its own coefficients allow.
+//! A series converges up to the nearest of them. A cubic polynomial t(r) or s(r) can move several
+//! of them outwards at once: the coefficients below were fitted to those by which a step of a
+//! tolerance of 1e-10 reaches furthest from each place. In contact that is up to 1.5 times as far,
+//! in flight up to 1.6. They decide about the length of the steps alone: the series are those of
+//! the equation in any variable, and a step is as long as its own coefficients allow.
 
 use super::series::{Inputs, Series};
 
@@ -18,7 +19,10 @@ use super::series::{Inputs, Series};
 #[inline(always)]
 pub(super) fn in_flight<const L: usize>(inputs: &Inputs<L>) -> [[f64; L]; 2] {
     let Inputs {
-        velocity, sine, unit, ..
+        velocity,
+        sine,
+        unit,
+        ..
     } = inputs;
     let [mut p, mut q] = [[0.0; L]; 2];
     for lane in 0..L {
@@ -41,7 +45,8 @@ pub(super) fn in_contact<const L: usize>(inputs: &Inputs<L>) -> [[f64; L]; 2] {
     } = inputs;
     let [mut p, mut q] = [[0.0; L]; 2];
     for lane in 0..L {
-        // r in units of the contact of Hertz. Where other forces set the pace its poles are not those of the motion.
+        // r in units of the contact of Hertz. Where other forces set the pace its poles are not
+        // those of the motion.
         let units = unit[lane] * fastest[lane] / largest[lane];
         let fits = units <= 2.0;
         let (w, v) = (root[lane] / largest[lane], velocity[lane] / fastest[lane]);
@@ -50,15 +55,27 @@ pub(super) fn in_contact<const L: usize>(inputs: &Inputs<L>) -> [[f64; L]; 2] {
         // Where it is in s: -1 at the touch, 0 where it is deepest, 1 at the release.
         let place = -v * (1.0 - 0.8 * w + 0.12 * (w * w) * (w * w) * w);
         let inside = (1.0 - place * place) * (1.0 - place * place);
-        p[lane] = if fits { 0.64 * place * inside * units } else { 0.0 };
-        q[lane] = if fits { 0.15 * inside * units * units } else { 0.0 };
+        p[lane] = if fits {
+            0.64 * place * inside * units
+        } else {
+            0.0
+        };
+        q[lane] = if fits {
+            0.15 * inside * units * units
+        } else {
+            0.0
+        };
     }
     [p, q]
 }
 
 /// The coefficient n of (1 + p r + q r^2) times a series.
 #[inline(always)]
-pub(super) fn stretched<const L: usize>([p, q]: &[[f64; L]; 2], series: &Series<L>, n: usize) -> [f64; L] {
+pub(super) fn stretched<const L: usize>(
+    [p, q]: &[[f64; L]; 2],
+    series: &Series<L>,
+    n: usize,
+) -> [f64; L] {
     let mut result = series[n];
     if n > 0 {
         let before = if n > 1 { series[n - 2] } else { [0.0; L] };
@@ -69,7 +86,8 @@ pub(super) fn stretched<const L: usize>([p, q]: &[[f64; L]; 2], series: &Series<
     result
 }
 
-/// The same of a series that is not kept: from its coefficient n and the two before it, the last one first.
+/// The same of a series that is not kept: from its coefficient n and the two before it, the last
+/// one first.
 #[inline(always)]
 pub(super) fn stretched_next<const L: usize>(
     [p, q]: &[[f64; L]; 2],
@@ -93,9 +111,18 @@ mod tests {
     fn a_stretched_step_goes_forward() {
         let numbers = [0.0, 1e-300, 1e-3, 0.3, 0.7, 1.0, 40.0, 1e300, f64::INFINITY];
         for place in numbers {
-            for (speed, unit) in numbers.into_iter().flat_map(|speed| numbers.map(|unit| (speed, unit))) {
+            for (speed, unit) in numbers
+                .into_iter()
+                .flat_map(|speed| numbers.map(|unit| (speed, unit)))
+            {
                 for velocity in [speed, -speed] {
-                    for (largest, fastest) in [(0.0, 0.0), (1.0, 1.0), (0.1, 1e-9), (1e-9, 3.0), (f64::INFINITY, 1.0)] {
+                    for (largest, fastest) in [
+                        (0.0, 0.0),
+                        (1.0, 1.0),
+                        (0.1, 1e-9),
+                        (1e-9, 3.0),
+                        (f64::INFINITY, 1.0),
+                    ] {
                         let inputs = Inputs::<1> {
                             place: [place],
                             velocity: [velocity],

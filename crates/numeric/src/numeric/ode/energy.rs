@@ -1,16 +1,18 @@
-//! Conservative motion by its energy: the other turning point, and how long a motion takes from one to the other as a smooth
-//! integrand. Numbers only: the judge and the method `exact` integrate it each for itself.
+//! Conservative motion by its energy: the other turning point, and how long a motion takes from one
+//! to the other as a smooth integrand. Numbers only: the judge and the method `exact` integrate it
+//! each for itself.
 //!
-//! Reference: L. D. Landau and E. M. Lifshitz, *Mechanics*, 3rd ed., section 11. Between the turning points `x_0` and `x_1`,
-//! with `U(x) = V(x_0) - V(x)`,
+//! Reference: L. D. Landau and E. M. Lifshitz, *Mechanics*, 3rd ed., section 11. Between the
+//! turning points `x_0` and `x_1`, with `U(x) = V(x_0) - V(x)`,
 //!
 //! ```text
 //! T = 2 int dx / sqrt(2 U),   x = m + r sin phi,   U = (x_0 - x)(x - x_1) g(x)   ->   T = 2 int dphi / sqrt(2 g)
 //! ```
 //!
-//! The last integrand is smooth between the corners and narrow places of the force, at which it is cut. `U` near either end is
-//! the mean of the force from there, so nothing cancels. A force that is infinite in the middle of a symmetric motion, as `1/x` or
-//! `sgn(x)/sqrt(abs(x))`, is cut at distances of equal ratio towards it; each `U` is counted from the end on its own side, so that
+//! The last integrand is smooth between the corners and narrow places of the force, at which it is
+//! cut. `U` near either end is the mean of the force from there, so nothing cancels. A force that
+//! is infinite in the middle of a symmetric motion, as `1/x` or `sgn(x)/sqrt(abs(x))`, is cut at
+//! distances of equal ratio towards it; each `U` is counted from the end on its own side, so that
 //! none goes through the middle, where that of `1/x` is infinite and `dt/dphi` zero.
 
 use std::cell::Cell;
@@ -91,7 +93,8 @@ pub enum PeriodError {
         /// When.
         time: f64,
     },
-    /// Released farther out than motions come back from, where what becomes of this one has no range of its own.
+    /// Released farther out than motions come back from, where what becomes of this one has no
+    /// range of its own.
     #[error("{error}; motions are {range}")]
     OutsideWell {
         /// The fate of this motion.
@@ -128,7 +131,9 @@ pub enum PeriodError {
         place: f64,
     },
     /// The force is beyond all numbers where the motion leads.
-    #[error("the force overflows at x = {place:e}: `{term}` is beyond the range of double precision, 1.8e308")]
+    #[error(
+        "the force overflows at x = {place:e}: `{term}` is beyond the range of double precision, 1.8e308"
+    )]
     Overflow {
         /// Where.
         place: f64,
@@ -164,7 +169,9 @@ impl PeriodError {
     #[must_use]
     pub fn with_range(mut self, words: String) -> Self {
         match &mut self {
-            Self::PushedAway { range, .. } | Self::OtherWell { range, .. } | Self::Escapes { range, .. } => {
+            Self::PushedAway { range, .. }
+            | Self::OtherWell { range, .. }
+            | Self::Escapes { range, .. } => {
                 *range = Some(words);
                 self
             }
@@ -195,18 +202,30 @@ impl PeriodError {
                 ..
             }
             | Self::Escapes {
-                start, searched: other, ..
+                start,
+                searched: other,
+                ..
             }
-            | Self::Separatrix { start, place: other }
-            | Self::NearSeparatrix { start, place: other } => {
+            | Self::Separatrix {
+                start,
+                place: other,
+            }
+            | Self::NearSeparatrix {
+                start,
+                place: other,
+            } => {
                 *start += origin;
                 *other += origin;
             }
-            Self::RunsAway { start: place, .. } | Self::Pole { place } | Self::Overflow { place, .. } => {
-                *place += origin
-            }
+            Self::RunsAway { start: place, .. }
+            | Self::Pole { place }
+            | Self::Overflow { place, .. } => *place += origin,
             Self::OutsideWell { error, .. } => **error = error.as_ref().clone().moved(origin),
-            Self::Waves | Self::NoReturn(_) | Self::Quadrature(_) | Self::Root(_) | Self::Integration(_) => {}
+            Self::Waves
+            | Self::NoReturn(_)
+            | Self::Quadrature(_)
+            | Self::Root(_)
+            | Self::Integration(_) => {}
         }
         self
     }
@@ -228,9 +247,12 @@ impl<'a> Force<'a> {
         }
     }
 
-    /// A force, and the places strictly between two positions at which to cut, in order: what lies between two cuts is
-    /// smooth and no narrower than its distance.
-    pub fn with_cuts(value: &'a dyn Fn(f64) -> f64, cuts: &'a dyn Fn(f64, f64) -> Vec<f64>) -> Self {
+    /// A force, and the places strictly between two positions at which to cut, in order: what lies
+    /// between two cuts is smooth and no narrower than its distance.
+    pub fn with_cuts(
+        value: &'a dyn Fn(f64) -> f64,
+        cuts: &'a dyn Fn(f64, f64) -> Vec<f64>,
+    ) -> Self {
         Self { value, cuts }
     }
 
@@ -299,7 +321,8 @@ impl<'a> Rates<'a> {
             below_start.push(below_start[below_start.len() - 1] + work);
         }
         below_start.reverse();
-        // By the half angle, so that a knot close to an end keeps its distance from it; that of a knot in the middle is known as it is.
+        // By the half angle, so that a knot close to an end keeps its distance from it; that of a
+        // knot in the middle is known as it is.
         let angle = |&knot: &f64| {
             let part = (knot - end) / (start - end);
             if infinite_middle && part > 0.25 && part < 0.75 {
@@ -329,7 +352,8 @@ impl<'a> Rates<'a> {
         if self.knots.len() == 2 {
             TOLERANCE
         } else if self.infinite_middle && ends.contains(&0.0) {
-            // The motion is nowhere faster: the piece adds less to the period than its share of the angles.
+            // The motion is nowhere faster: the piece adds less to the period than its share of the
+            // angles.
             let share = (self.angles[piece + 1] - self.angles[piece]) / std::f64::consts::PI;
             (TOLERANCE_OF_PIECES / share).min(ROUGH)
         } else {
@@ -341,8 +365,11 @@ impl<'a> Rates<'a> {
     pub fn time_per_angle(&self, piece: usize, phi: f64) -> Result<f64, QuadratureError> {
         let (end, start) = (self.knots[0], self.knots[self.knots.len() - 1]);
         let (low, high) = (self.knots[piece], self.knots[piece + 1]);
-        let mean_force = |from: f64, to: f64| integral(&|u| self.force.at(from + (to - from) * u), 0.0, 1.0, 0.0);
-        // From the nearer end: beside a pole the distance from it counts, not the position. Or from the middle, for the same reason.
+        let mean_force = |from: f64, to: f64| {
+            integral(&|u| self.force.at(from + (to - from) * u), 0.0, 1.0, 0.0)
+        };
+        // From the nearer end: beside a pole the distance from it counts, not the position. Or from
+        // the middle, for the same reason.
         let x = match phi >= 0.0 {
             _ if self.infinite_middle && phi.abs() < FRAC_PI_6 => start * phi.sin(),
             true => start - (start - end) * (0.5 * (FRAC_PI_2 - phi)).sin().powi(2),
@@ -354,7 +381,8 @@ impl<'a> Rates<'a> {
         } else {
             x.clamp(low.min(high), low.max(high))
         };
-        // From the nearer end, so that nothing cancels; in the outermost piece the distance from that end cancels exactly.
+        // From the nearer end, so that nothing cancels; in the outermost piece the distance from
+        // that end cancels exactly.
         let quotient = if phi >= 0.0 && piece + 2 == self.knots.len() {
             mean_force(x, start)? / (x - end)
         } else if phi < 0.0 && piece == 0 {
@@ -366,21 +394,27 @@ impl<'a> Rates<'a> {
                 self.below_end[piece] - (x - low) * mean_force(low, x)?
             };
             let span = (start - end).powi(2);
-            energy / (span * (0.5 * (FRAC_PI_2 - phi)).sin().powi(2) * (0.5 * (FRAC_PI_2 + phi)).sin().powi(2))
+            energy
+                / (span
+                    * (0.5 * (FRAC_PI_2 - phi)).sin().powi(2)
+                    * (0.5 * (FRAC_PI_2 + phi)).sin().powi(2))
         };
         Ok((self.weight)(x) / (2.0 * quotient).sqrt())
     }
 }
 
-/// Whether a force grows without end towards zero, on both sides and as far as numbers go: `size` is how far from there the motion is.
+/// Whether a force grows without end towards zero, on both sides and as far as numbers go: `size`
+/// is how far from there the motion is.
 pub fn grows_towards_zero(force: &dyn Fn(f64) -> f64, size: f64) -> bool {
     [1.0, -1.0].into_iter().all(|side| {
-        let [near, far, farther] = [1e-200, 1e-100, 1e-50].map(|part| force(side * part * size).abs());
+        let [near, far, farther] =
+            [1e-200, 1e-100, 1e-50].map(|part| force(side * part * size).abs());
         far > farther && near > far
     })
 }
 
-/// Further knots on both sides of zero, at distances of equal ratio: on each of these pieces a force that is infinite at zero is smooth.
+/// Further knots on both sides of zero, at distances of equal ratio: on each of these pieces a
+/// force that is infinite at zero is smooth.
 fn graded(knots: &[f64]) -> Vec<f64> {
     /// What lies closer than this, relatively, adds less to the period than its rounding.
     const CLOSEST: f64 = 1e-15;
@@ -403,13 +437,18 @@ fn graded(knots: &[f64]) -> Vec<f64> {
     found
 }
 
-/// Knots so close that the force between two of them is integrated by a few panels, where between these ones it waves too
-/// often for many: an integral of its own for every instant would then cost as much as the square of the waves. What ends at a
-/// zero at which the force is infinite is left as it is.
+/// Knots so close that the force between two of them is integrated by a few panels, where between
+/// these ones it waves too often for many: an integral of its own for every instant would then cost
+/// as much as the square of the waves. What ends at a zero at which the force is infinite is left
+/// as it is.
 ///
 /// # Errors
 /// More knots than can be waited for.
-fn resolved(force: &Force, knots: Vec<f64>, infinite_middle: bool) -> Result<Vec<f64>, PeriodError> {
+fn resolved(
+    force: &Force,
+    knots: Vec<f64>,
+    infinite_middle: bool,
+) -> Result<Vec<f64>, PeriodError> {
     const FEW_PANELS: i32 = 4;
     const MOST_KNOTS: usize = 1 << 14;
     const HALVINGS: u32 = 15;
@@ -439,8 +478,14 @@ fn resolved(force: &Force, knots: Vec<f64>, infinite_middle: bool) -> Result<Vec
 /// Panels after which an integral is left to adaptive quadrature.
 const MOST_PANELS: i32 = 64;
 
-/// The integral of a force: panels are doubled until the value settles. Errors below `negligible` do not count.
-fn integral(function: &dyn Fn(f64) -> f64, from: f64, to: f64, negligible: f64) -> Result<f64, QuadratureError> {
+/// The integral of a force: panels are doubled until the value settles. Errors below `negligible`
+/// do not count.
+fn integral(
+    function: &dyn Fn(f64) -> f64,
+    from: f64,
+    to: f64,
+    negligible: f64,
+) -> Result<f64, QuadratureError> {
     const MOST: usize = 1000;
     integral_within(function, [from, to], negligible, MOST)
 }
@@ -458,15 +503,23 @@ fn integral_within(
     match integrate_within(function, &[from, to], [TOLERANCE, 0.0], most_panels) {
         // Where pull and push cancel, the integral is as good as the forces in it allow.
         Err(QuadratureError::NotConverged {
-            value, error_estimate, ..
+            value,
+            error_estimate,
+            ..
         }) if error_estimate <= f64::max(1e-11 * size(function, from, to), negligible) => Ok(value),
         result => result.map(|(value, _)| value),
     }
 }
 
-/// The value at which the integral settles while panels are doubled, or from which on doubling no longer brings it closer, which is
-/// where the rounding of the force itself begins.
-fn settled(function: &dyn Fn(f64) -> f64, from: f64, to: f64, negligible: f64, most_panels: i32) -> Option<f64> {
+/// The value at which the integral settles while panels are doubled, or from which on doubling no
+/// longer brings it closer, which is where the rounding of the force itself begins.
+fn settled(
+    function: &dyn Fn(f64) -> f64,
+    from: f64,
+    to: f64,
+    negligible: f64,
+    most_panels: i32,
+) -> Option<f64> {
     let with_panels = |panels: i32| {
         let place = |k: i32| from + (to - from) * f64::from(k) / f64::from(panels);
         let nodes = (0..panels).flat_map(|k| nodes_and_weights(place(k), place(k + 1)));
@@ -477,7 +530,8 @@ fn settled(function: &dyn Fn(f64) -> f64, from: f64, to: f64, negligible: f64, m
     while panels <= most_panels {
         let finer = with_panels(panels);
         let next = (finer - value).abs();
-        if next <= f64::max(TOLERANCE * finer.abs(), negligible) || (next >= 0.5 * change && next <= 1e-9 * finer.abs())
+        if next <= f64::max(TOLERANCE * finer.abs(), negligible)
+            || (next >= 0.5 * change && next <= 1e-9 * finer.abs())
         {
             return Some(finer);
         }
@@ -511,7 +565,8 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
     /// Steps per window of the search, and how many amplitudes far it goes.
     const STEPS: usize = 64;
     const FARTHEST: f64 = 1e10;
-    /// So many amplitudes away it is not the waves on the way that are in question, as over one summit of a pendulum after the other.
+    /// So many amplitudes away it is not the waves on the way that are in question, as over one
+    /// summit of a pendulum after the other.
     const FAR: f64 = 100.0;
     /// How often a stretch on which the force has no integral is halved.
     const HALVINGS: u32 = 60;
@@ -586,7 +641,8 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
                         here,
                         next,
                     );
-                    let end = root.map_err(|error| failure.map_or(error.into(), PeriodError::from))?;
+                    let end =
+                        root.map_err(|error| failure.map_or(error.into(), PeriodError::from))?;
                     return match (end - equilibrium) * amplitude > 0.0 {
                         true => Err(PeriodError::OtherWell {
                             start,
@@ -610,29 +666,37 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
     })
 }
 
-/// Whether the well is symmetric and has a single bottom as far as the amplitude. The mirror image of the start is then the
-/// turning point to the last digit, which no root finder gives near a separatrix.
+/// Whether the well is symmetric and has a single bottom as far as the amplitude. The mirror image
+/// of the start is then the turning point to the last digit, which no root finder gives near a
+/// separatrix.
 fn is_symmetric(force: &Force, equilibrium: f64, amplitude: f64) -> bool {
-    /// The search for a turning point does not pass a place where the force is infinite: there symmetry may be lost in rounding.
+    /// The search for a turning point does not pass a place where the force is infinite: there
+    /// symmetry may be lost in rounding.
     const ROUNDING: f64 = 1e-12;
     let infinite = grows_towards_zero(&|y| force.at(equilibrium + y), amplitude);
     let rounding = if infinite { ROUNDING } else { 0.0 };
     let mut places: Vec<f64> = (1..=16).map(|k| amplitude * f64::from(k) / 16.0).collect();
     let knots = force.knots(equilibrium - amplitude, equilibrium + amplitude);
     places.extend(knots.iter().map(|knot| knot - equilibrium));
-    places.extend(knots.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]) - equilibrium));
+    places.extend(
+        knots
+            .windows(2)
+            .map(|pair| 0.5 * (pair[0] + pair[1]) - equilibrium),
+    );
     places.into_iter().filter(|&x| x != 0.0).all(|x| {
         let (here, there) = (force.at(equilibrium + x), force.at(equilibrium - x));
         (here + there).abs() <= rounding * here.abs() && here * x.signum() > 0.0
     })
 }
 
-/// A step cut where the force first pushes the motion back and then on again, so that the kinetic energy has no lowest point
-/// between two ends.
+/// A step cut where the force first pushes the motion back and then on again, so that the kinetic
+/// energy has no lowest point between two ends.
 fn where_it_turns(force: &Force, side: f64, from: f64, to: f64) -> Vec<(f64, f64)> {
     const SAMPLES: usize = 4;
     let place = |k: usize| from + (to - from) * k as f64 / SAMPLES as f64;
-    let drives: Vec<bool> = (1..SAMPLES).map(|k| force.at(place(k)) * side > 0.0).collect();
+    let drives: Vec<bool> = (1..SAMPLES)
+        .map(|k| force.at(place(k)) * side > 0.0)
+        .collect();
     if drives.windows(2).all(|pair| pair[0] || !pair[1]) {
         return vec![(from, to)];
     }

@@ -1,10 +1,11 @@
 //! Events: zeros of a function of (t, x, v), or of all values, found inside a step.
 //!
-//! Within a step the motion is a polynomial of degree 8, so the event function is sampled at 17 Chebyshev points, and
-//! each pair of neighbouring samples of opposite sign brackets a crossing, which is then located to rounding
-//! accuracy. Where the samples keep their sign but come closer to zero in between (their derivative changes sign),
-//! the nearest point is searched: two crossings between two samples, the grazing of a barrier, are found as well. An
-//! event function should vary on the scale of the motion, not faster.
+//! Within a step the motion is a polynomial of degree 8, so the event function is sampled at 17
+//! Chebyshev points, and each pair of neighbouring samples of opposite sign brackets a crossing,
+//! which is then located to rounding accuracy. Where the samples keep their sign but come closer to
+//! zero in between (their derivative changes sign), the nearest point is searched: two crossings
+//! between two samples, the grazing of a barrier, are found as well. An event function should vary
+//! on the scale of the motion, not faster.
 
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -14,8 +15,8 @@ use super::root::{find_minimum, find_root};
 use super::sample::Sample;
 use super::trajectory::Step;
 
-/// A function of (t, x, v), or of all values, whose zero matters, the direction of crossing that counts, and what is to happen
-/// there.
+/// A function of (t, x, v), or of all values, whose zero matters, the direction of crossing that
+/// counts, and what is to happen there.
 pub struct Event<'a, S = State> {
     pub(super) function: Box<dyn Fn(&S) -> f64 + 'a>,
     pub(super) direction: Direction,
@@ -39,26 +40,36 @@ pub enum Action<'a, S = State> {
     Record,
     /// It is listed and the run ends there.
     Stop,
-    /// It is listed, and the run restarts with another right side and possibly another state: the closure gets the
-    /// state at the event and answers the index of the phase to go on with and the state to go on from (its time is
-    /// not used).
+    /// It is listed, and the run restarts with another right side and possibly another state: the
+    /// closure gets the state at the event and answers the index of the phase to go on with and the
+    /// state to go on from (its time is not used).
     Switch(Box<dyn Fn(S) -> (usize, S) + 'a>),
 }
 
 impl<'a> Event<'a> {
     /// An event that is only listed. Counts in both directions until told otherwise.
     pub fn record(function: impl Fn(f64, f64, f64) -> f64 + 'a) -> Self {
-        Self::new(move |state| function(state.t, state.x, state.v), Action::Record)
+        Self::new(
+            move |state| function(state.t, state.x, state.v),
+            Action::Record,
+        )
     }
 
     /// An event that ends the run. Counts in both directions until told otherwise.
     pub fn stop(function: impl Fn(f64, f64, f64) -> f64 + 'a) -> Self {
-        Self::new(move |state| function(state.t, state.x, state.v), Action::Stop)
+        Self::new(
+            move |state| function(state.t, state.x, state.v),
+            Action::Stop,
+        )
     }
 
-    /// An event that switches the right side, see [`Action::Switch`]. Let `next` put the state exactly on the surface
-    /// (`x = barrier`), so that the surface just left is not met again by rounding.
-    pub fn switch(function: impl Fn(f64, f64, f64) -> f64 + 'a, next: impl Fn(State) -> (usize, State) + 'a) -> Self {
+    /// An event that switches the right side, see [`Action::Switch`]. Let `next` put the state
+    /// exactly on the surface (`x = barrier`), so that the surface just left is not met again by
+    /// rounding.
+    pub fn switch(
+        function: impl Fn(f64, f64, f64) -> f64 + 'a,
+        next: impl Fn(State) -> (usize, State) + 'a,
+    ) -> Self {
         Self::new(
             move |state| function(state.t, state.x, state.v),
             Action::Switch(Box::new(next)),
@@ -100,10 +111,12 @@ impl<'a, S> Event<'a, S> {
         }
     }
 
-    /// Whether a phase that starts on this surface and moves to this side has to be left: a contact that begins with
-    /// less speed than rounding can resolve, for one.
+    /// Whether a phase that starts on this surface and moves to this side has to be left: a contact
+    /// that begins with less speed than rounding can resolve, for one.
     fn leaves_at_once(&self, rising: bool) -> bool {
-        matches!(self.action, Action::Switch(_)) && self.direction != Direction::Either && self.counts(rising)
+        matches!(self.action, Action::Switch(_))
+            && self.direction != Direction::Either
+            && self.counts(rising)
     }
 }
 
@@ -114,20 +127,22 @@ pub(super) struct NotFinite;
 /// Follows the sign of one event function from step to step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Watch {
-    /// Sign of the last sample that was not zero; `None` at the start of a phase, and after the function reached zero
-    /// at the very end of a step: from there the next sign is the start, not a crossing.
+    /// Sign of the last sample that was not zero; `None` at the start of a phase, and after the
+    /// function reached zero at the very end of a step: from there the next sign is the start, not
+    /// a crossing.
     positive: Option<bool>,
     /// Whether the phase started on the surface and has not left it yet.
     starts_on_surface: bool,
 }
 
 impl Watch {
-    /// The fractions of the step at which the event happens, in order, and whether its function rises there. `moved` is given
-    /// for the first step of a phase: its start, moved on at the rates that the values have there.
+    /// The fractions of the step at which the event happens, in order, and whether its function
+    /// rises there. `moved` is given for the first step of a phase: its start, moved on at the
+    /// rates that the values have there.
     ///
-    /// A start on the surface is no crossing, reaching zero is one, and leaving it again is none. One exception:
-    /// where a phase starts on the surface of a switch and moves through it in the direction that counts, it is left
-    /// at once.
+    /// A start on the surface is no crossing, reaching zero is one, and leaving it again is none.
+    /// One exception: where a phase starts on the surface of a switch and moves through it in the
+    /// direction that counts, it is left at once.
     pub(super) fn crossings<S: Sample>(
         &mut self,
         step: &Step<S>,
@@ -147,14 +162,19 @@ impl Watch {
         let starts_on_surface = first && samples.first().is_some_and(|&(_, value)| value == 0.0);
         if starts_on_surface {
             self.starts_on_surface = true;
-            // What rounding leaves of the values has any sign, and so has the error of the polynomial where what the function depends on is
-            // at rest: it leaves as a square of time at least.
+            // What rounding leaves of the values has any sign, and so has the error of the
+            // polynomial where what the function depends on is at rest: it leaves as a square of
+            // time at least.
             let rounding = rounding_at(event, &step.state_at(0.0));
             let largest = samples
                 .iter()
                 .fold(0.0, |largest: f64, (_, value)| largest.max(value.abs()));
             let is_at_rest = moved.is_some_and(|moved| (event.function)(moved) == 0.0);
-            let slope_error = if is_at_rest { SLOPE_ERROR * largest } else { 0.0 };
+            let slope_error = if is_at_rest {
+                SLOPE_ERROR * largest
+            } else {
+                0.0
+            };
             samples
                 .iter_mut()
                 .take_while(|(fraction, value)| value.abs() <= rounding.max(slope_error * fraction))
@@ -171,7 +191,8 @@ impl Watch {
                     self.positive = None;
                 }
                 (Some(positive), _) if positive != (value > 0.0) => {
-                    // The sign may differ by rounding between the end of a step and the start of the next.
+                    // The sign may differ by rounding between the end of a step and the start of
+                    // the next.
                     let root = if fraction == before {
                         Ok(fraction)
                     } else {
@@ -202,7 +223,8 @@ fn rounding_at<S: Sample>(event: &Event<S>, state: &S) -> f64 {
     const LAST_DIGITS: f64 = 4.0 * f64::EPSILON;
     let (time, values) = (state.time(), state.values());
     let here = (event.function)(state);
-    let change = |time: f64, values: &S::Values| ((event.function)(&S::new(time, values)) - here).abs();
+    let change =
+        |time: f64, values: &S::Values| ((event.function)(&S::new(time, values)) - here).abs();
     let changes = (0..values.as_ref().len()).map(|index| {
         let mut changed = values.clone();
         changed.as_mut()[index] *= 1.0 + LAST_DIGITS;
@@ -216,8 +238,8 @@ fn rounding_at<S: Sample>(event: &Event<S>, state: &S) -> f64 {
 static SAMPLES: LazyLock<[f64; 17]> =
     LazyLock::new(|| std::array::from_fn(|index| 0.5 * (1.0 - (PI * index as f64 / 16.0).cos())));
 
-/// Extra samples between the first two points of a phase: one that starts on a surface may leave and meet it again
-/// within a tiny part of its first step.
+/// Extra samples between the first two points of a phase: one that starts on a surface may leave
+/// and meet it again within a tiny part of its first step.
 const NEAR_START: usize = 20;
 
 /// The error of the slope of a step at its start, relative to the largest value in the step.
@@ -228,10 +250,13 @@ fn sample_fractions(first: bool) -> impl Iterator<Item = f64> {
     let extra = (1..=near_start)
         .rev()
         .map(|power| SAMPLES[1] * 0.25_f64.powi(power as i32));
-    std::iter::once(0.0).chain(extra).chain(SAMPLES[1..].iter().copied())
+    std::iter::once(0.0)
+        .chain(extra)
+        .chain(SAMPLES[1..].iter().copied())
 }
 
-/// Where |value| has a minimum between samples of one sign, inserts the nearest point found if it lies beyond zero.
+/// Where |value| has a minimum between samples of one sign, inserts the nearest point found if it
+/// lies beyond zero.
 fn insert_near_misses(samples: &mut Vec<(f64, f64)>, value_at: impl Fn(f64) -> f64) {
     let mut misses = Vec::new();
     let mut search = |from: f64, to: f64, sign: f64| {
@@ -241,14 +266,17 @@ fn insert_near_misses(samples: &mut Vec<(f64, f64)>, value_at: impl Fn(f64) -> f
         }
     };
     for triple in samples.windows(3) {
-        let [(left, value_left), (_, value), (right, value_right)] = [triple[0], triple[1], triple[2]];
+        let [(left, value_left), (_, value), (right, value_right)] =
+            [triple[0], triple[1], triple[2]];
         let sign = value.signum();
-        let (height_left, height, height_right) = (sign * value_left, sign * value, sign * value_right);
+        let (height_left, height, height_right) =
+            (sign * value_left, sign * value, sign * value_right);
         if value != 0.0 && height < height_left && height <= height_right {
             search(left, right, sign);
         }
     }
-    // A minimum beside an end of the step has no neighbour on one side: a point close to the end tells the slope.
+    // A minimum beside an end of the step has no neighbour on one side: a point close to the end
+    // tells the slope.
     if let [
         (first, value_first),
         (second, value_second),
@@ -309,7 +337,10 @@ mod tests {
 
     #[test]
     fn a_sign_that_changes_between_two_steps_is_a_crossing() {
-        assert_eq!(crossings(&[(1.0, 1e-9), (-1e-9, -1.0)]), [vec![], vec![0.0]]);
+        assert_eq!(
+            crossings(&[(1.0, 1e-9), (-1e-9, -1.0)]),
+            [vec![], vec![0.0]]
+        );
     }
 
     #[test]
@@ -334,7 +365,10 @@ mod tests {
             let step = line(0.0, -1.0);
             let moved = step.state_at(1.0);
             assert_eq!(
-                Watch::default().crossings(&step, &event, Some(&moved)).unwrap().len(),
+                Watch::default()
+                    .crossings(&step, &event, Some(&moved))
+                    .unwrap()
+                    .len(),
                 found
             );
         }

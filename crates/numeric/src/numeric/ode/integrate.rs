@@ -1,8 +1,8 @@
 //! The run itself: step, look for events in the step, restart where the right side switches.
 //!
-//! Only the stepping is the library's: its 0.7.0 accepts a step whose error estimate is not a number, so every step
-//! is checked here and tried again smaller; its event handling does not see two crossings in one step, so ours is
-//! used.
+//! Only the stepping is the library's: its 0.7.0 accepts a step whose error estimate is not a
+//! number, so every step is checked here and tried again smaller; its event handling does not see
+//! two crossings in one step, so ours is used.
 
 use std::cell::Cell;
 
@@ -22,13 +22,16 @@ use crate::interrupt::Interrupt;
 pub struct Options {
     /// Error allowed per step relative to the size of each value.
     pub relative_tolerance: f64,
-    /// Error allowed per step beside it, in the units of the values: choose it well below their size.
+    /// Error allowed per step beside it, in the units of the values: choose it well below their
+    /// size.
     pub absolute_tolerance: f64,
-    /// Steps, rejected ones included, after which the run gives up. Each accepted step keeps about 200 bytes.
+    /// Steps, rejected ones included, after which the run gives up. Each accepted step keeps about
+    /// 200 bytes.
     pub maximum_steps: usize,
     /// Longest step: infinity, unless a right side or an event varies faster than the motion.
     pub maximum_step: f64,
-    /// Whether the motion has parts of very different speed: an implicit method of lower order then takes longer steps.
+    /// Whether the motion has parts of very different speed: an implicit method of lower order then
+    /// takes longer steps.
     pub stiff: bool,
     /// Who may ask the run to stop where it is.
     pub interrupt: Interrupt,
@@ -73,16 +76,21 @@ impl<'a> Phase<'a> {
 }
 
 /// x'' = g(t, x, v) as x' = v, v' = g.
-fn first_order(acceleration: impl Fn(f64, f64, f64) -> f64) -> impl Fn(f64, &[f64; 2], &mut [f64; 2]) {
+fn first_order(
+    acceleration: impl Fn(f64, f64, f64) -> f64,
+) -> impl Fn(f64, &[f64; 2], &mut [f64; 2]) {
     move |t, &[x, v], rates| *rates = [v, acceleration(t, x, v)]
 }
 
-/// What makes a run impossible from the outset. A run that began keeps what it has, see [`StopReason`].
+/// What makes a run impossible from the outset. A run that began keeps what it has, see
+/// [`StopReason`].
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum IntegrationError {
     /// The start or the end time is not a finite number.
-    #[error("the start (t = {t}, x = {x}, v = {v}) and the end time {end_time} must be finite numbers")]
+    #[error(
+        "the start (t = {t}, x = {x}, v = {v}) and the end time {end_time} must be finite numbers"
+    )]
     NotFinite {
         /// Time of the start.
         t: f64,
@@ -94,7 +102,9 @@ pub enum IntegrationError {
         end_time: f64,
     },
     /// The acceleration has no finite value at the start.
-    #[error("the acceleration has no finite value at the start (t = {t}, x = {x}, v = {v}): start inside its domain")]
+    #[error(
+        "the acceleration has no finite value at the start (t = {t}, x = {x}, v = {v}): start inside its domain"
+    )]
     AccelerationNotFinite {
         /// Time of the start.
         t: f64,
@@ -104,7 +114,9 @@ pub enum IntegrationError {
         v: f64,
     },
     /// A value at the start of first-order equations, or the end time, is not a finite number.
-    #[error("the start (t = {start_time}), its values and the end time {end_time} must be finite numbers")]
+    #[error(
+        "the start (t = {start_time}), its values and the end time {end_time} must be finite numbers"
+    )]
     ValuesNotFinite {
         /// Time of the start.
         start_time: f64,
@@ -112,7 +124,9 @@ pub enum IntegrationError {
         end_time: f64,
     },
     /// A rate of first-order equations has no finite value at the start.
-    #[error("rate {index}, counted from 0, has no finite value at the start (t = {t}): start inside its domain")]
+    #[error(
+        "rate {index}, counted from 0, has no finite value at the start (t = {t}): start inside its domain"
+    )]
     RateNotFinite {
         /// Which.
         index: usize,
@@ -120,7 +134,9 @@ pub enum IntegrationError {
         t: f64,
     },
     /// The end lies before the start.
-    #[error("the end time {end_time} lies before the start {start_time}: motions are followed forward only")]
+    #[error(
+        "the end time {end_time} lies before the start {start_time}: motions are followed forward only"
+    )]
     EndBeforeStart {
         /// Time of the start.
         start_time: f64,
@@ -128,7 +144,9 @@ pub enum IntegrationError {
         end_time: f64,
     },
     /// A tolerance no double-precision run can keep.
-    #[error("the integrator's tolerance must lie between 1e-15 and 0.1, not {0}: 1e-10 is a good choice")]
+    #[error(
+        "the integrator's tolerance must lie between 1e-15 and 0.1, not {0}: 1e-10 is a good choice"
+    )]
     Tolerance(f64),
     /// A maximum step that is not positive.
     #[error("the longest step must be positive, not {0}")]
@@ -143,9 +161,11 @@ pub enum IntegrationError {
     },
 }
 
-/// The motion x'' = acceleration(t, x, v) from `start` to `end_time`, or to the first stopping event.
+/// The motion x'' = acceleration(t, x, v) from `start` to `end_time`, or to the first stopping
+/// event.
 ///
-/// An [`Action::Switch`] must name phase 0, the only one, and so restarts with a changed state: a rebound.
+/// An [`Action::Switch`] must name phase 0, the only one, and so restarts with a changed state: a
+/// rebound.
 ///
 /// # Errors
 /// [`IntegrationError`] where the run cannot begin. One that ends early is no error: ask
@@ -167,14 +187,23 @@ pub fn integrate<'a>(
     options: &Options,
 ) -> Result<Trajectory, IntegrationError> {
     let rates = first_order(acceleration);
-    run(&[(&rates, events)], 0, start, end_time, Looks::NOWHERE, options).map_err(|error| of_motion(error, start))
+    run(
+        &[(&rates, events)],
+        0,
+        start,
+        end_time,
+        Looks::NOWHERE,
+        options,
+    )
+    .map_err(|error| of_motion(error, start))
 }
 
-/// The motion through several smooth right sides: begins in phase `first`, goes on as the switches of the events say.
+/// The motion through several smooth right sides: begins in phase `first`, goes on as the switches
+/// of the events say.
 ///
 /// # Errors
-/// As [`integrate`], and [`IntegrationError::UnknownPhase`] where `first` or a switch names a phase that is not
-/// there.
+/// As [`integrate`], and [`IntegrationError::UnknownPhase`] where `first` or a switch names a phase
+/// that is not there.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -202,10 +231,12 @@ pub fn integrate_phases(
         .iter()
         .map(|phase| (&*phase.rates as _, phase.events.as_slice()))
         .collect();
-    run(&parts, first, start, end_time, Looks::NOWHERE, options).map_err(|error| of_motion(error, start))
+    run(&parts, first, start, end_time, Looks::NOWHERE, options)
+        .map_err(|error| of_motion(error, start))
 }
 
-/// Any first-order equations: `rates` writes y' at the time and the values y that it is given. Otherwise as [`integrate`].
+/// Any first-order equations: `rates` writes y' at the time and the values y that it is given.
+/// Otherwise as [`integrate`].
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -231,7 +262,14 @@ pub fn integrate_first_order<'a, Y: Values>(
     events: &[Event<'a, Point<Y>>],
     options: &Options,
 ) -> Result<Trajectory<Point<Y>>, IntegrationError> {
-    run(&[(&rates, events)], 0, start, end_time, Looks::NOWHERE, options)
+    run(
+        &[(&rates, events)],
+        0,
+        start,
+        end_time,
+        Looks::NOWHERE,
+        options,
+    )
 }
 
 /// As [`integrate_first_order`], with steps that end where they have to.
@@ -253,11 +291,13 @@ pub fn integrate_through<'a, Y: Values>(
 pub struct Looks<'a, S> {
     /// Times, in order, that no step crosses.
     pub critical: &'a [f64],
-    /// From a step as a function of its fraction the fraction of it that may be kept; nothing for all of it.
+    /// From a step as a function of its fraction the fraction of it that may be kept; nothing for
+    /// all of it.
     pub kept: Option<&'a Kept<'a, S>>,
 }
 
-/// From a step as a function of its fraction the fraction of it that may be kept; `None` for all of it.
+/// From a step as a function of its fraction the fraction of it that may be kept; `None` for all of
+/// it.
 pub type Kept<'a, S> = dyn Fn(&dyn Fn(f64) -> S) -> Option<f64> + 'a;
 
 impl<S> Looks<'_, S> {
@@ -278,15 +318,20 @@ impl<S> Copy for Looks<'_, S> {}
 /// The error in the words of displacement and velocity.
 fn of_motion(error: IntegrationError, State { t, x, v }: State) -> IntegrationError {
     match error {
-        IntegrationError::ValuesNotFinite { end_time, .. } => IntegrationError::NotFinite { t, x, v, end_time },
-        IntegrationError::RateNotFinite { .. } => IntegrationError::AccelerationNotFinite { t, x, v },
+        IntegrationError::ValuesNotFinite { end_time, .. } => {
+            IntegrationError::NotFinite { t, x, v, end_time }
+        }
+        IntegrationError::RateNotFinite { .. } => {
+            IntegrationError::AccelerationNotFinite { t, x, v }
+        }
         other => other,
     }
 }
 
 type Part<'r, 'a, S> = (&'r Rates<'r, S>, &'r [Event<'a, S>]);
 
-/// Switches in a row without progress of time (beyond rounding) after which the run is called stalled.
+/// Switches in a row without progress of time (beyond rounding) after which the run is called
+/// stalled.
 const MAXIMUM_IDLE_SWITCHES: usize = 16;
 
 fn run<S: Sample>(
@@ -306,7 +351,10 @@ fn run<S: Sample>(
     let mut at_start = start.values();
     rates(start.time(), &start.values(), &mut at_start);
     if let Some(index) = at_start.as_ref().iter().position(|rate| !rate.is_finite()) {
-        return Err(IntegrationError::RateNotFinite { index, t: start.time() });
+        return Err(IntegrationError::RateNotFinite {
+            index,
+            t: start.time(),
+        });
     }
     let evaluations = Cell::new(0);
     let mut trajectory = Trajectory {
@@ -369,10 +417,16 @@ fn run<S: Sample>(
 fn check(start: &impl Sample, end_time: f64, options: &Options) -> Result<(), IntegrationError> {
     let start_time = start.time();
     if !(start.is_finite() && end_time.is_finite()) {
-        return Err(IntegrationError::ValuesNotFinite { start_time, end_time });
+        return Err(IntegrationError::ValuesNotFinite {
+            start_time,
+            end_time,
+        });
     }
     if end_time < start_time {
-        return Err(IntegrationError::EndBeforeStart { start_time, end_time });
+        return Err(IntegrationError::EndBeforeStart {
+            start_time,
+            end_time,
+        });
     }
     if !(1e-15..=0.1).contains(&options.relative_tolerance) {
         return Err(IntegrationError::Tolerance(options.relative_tolerance));
@@ -443,7 +497,11 @@ impl<S: Sample> Leg<'_, '_, S> {
                 return LegEnd::Stopped(reason);
             }
             *attempts += 1;
-            let allowed = self.options.maximum_step.min(remaining).min(self.to_critical(time));
+            let allowed = self
+                .options
+                .maximum_step
+                .min(remaining)
+                .min(self.to_critical(time));
             let wanted = solver.h().min(allowed);
             solver.set_h(wanted);
             self.equations.non_finite.set(false);
@@ -503,7 +561,10 @@ impl<S: Sample> Leg<'_, '_, S> {
     /// How far the next critical time is, farther than rounding.
     fn to_critical(&self, time: f64) -> f64 {
         let beyond = time + 4.0 * f64::EPSILON * time.abs();
-        let next = self.looks.critical.partition_point(|critical| *critical <= beyond);
+        let next = self
+            .looks
+            .critical
+            .partition_point(|critical| *critical <= beyond);
         self.looks
             .critical
             .get(next)
@@ -519,8 +580,13 @@ impl<S: Sample> Leg<'_, '_, S> {
         asked.then_some(StopReason::Interrupted { time })
     }
 
-    /// Keeps what happened in a step, up to the first that ends the leg: then the path ends there, and this is how.
-    fn recorded(&self, happenings: Vec<(S, usize, bool)>, trajectory: &mut Trajectory<S>) -> Option<LegEnd<S>> {
+    /// Keeps what happened in a step, up to the first that ends the leg: then the path ends there,
+    /// and this is how.
+    fn recorded(
+        &self,
+        happenings: Vec<(S, usize, bool)>,
+        trajectory: &mut Trajectory<S>,
+    ) -> Option<LegEnd<S>> {
         for (happening, event, rising) in happenings {
             trajectory.occurrences.push(Occurrence {
                 phase: self.phase,
@@ -568,8 +634,13 @@ impl<S: Sample> Leg<'_, '_, S> {
         }
         for step in [first_step, 1e-6 * longest] {
             let mut solver = (scheme.fresh)(self.options, step.min(longest), longest);
-            // The trial steps by which a first step is chosen may leave the domain: then a short one is prescribed.
-            if solver.init(&self.equations, time, self.end_time, &values).is_ok() && solver.h() > 0.0 {
+            // The trial steps by which a first step is chosen may leave the domain: then a short
+            // one is prescribed.
+            if solver
+                .init(&self.equations, time, self.end_time, &values)
+                .is_ok()
+                && solver.h() > 0.0
+            {
                 return Some(solver);
             }
         }
@@ -584,7 +655,8 @@ impl<S: Sample> Leg<'_, '_, S> {
         }
     }
 
-    /// The start of a step, moved on for so long at the rates that it has: what is at rest stays where it is.
+    /// The start of a step, moved on for so long at the rates that it has: what is at rest stays
+    /// where it is.
     fn moved(&self, start: &S, length: f64) -> S {
         let mut values = start.values();
         let mut rates = values.clone();
@@ -614,9 +686,14 @@ impl<S: Sample> Leg<'_, '_, S> {
         finite.then(|| (Step::new(self.phase, start.clone(), length, values), next))
     }
 
-    /// The events inside the step in the order of time, as states, and whether they rise; `None` where an event function is not
-    /// finite.
-    fn happenings(&self, step: &Step<S>, watches: &mut [Watch], moved: Option<&S>) -> Option<Vec<(S, usize, bool)>> {
+    /// The events inside the step in the order of time, as states, and whether they rise; `None`
+    /// where an event function is not finite.
+    fn happenings(
+        &self,
+        step: &Step<S>,
+        watches: &mut [Watch],
+        moved: Option<&S>,
+    ) -> Option<Vec<(S, usize, bool)>> {
         let mut found = Vec::new();
         for (index, (event, watch)) in self.events.iter().zip(watches).enumerate() {
             let crossings = watch.crossings(step, event, moved).ok()?;

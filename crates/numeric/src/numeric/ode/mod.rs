@@ -1,18 +1,20 @@
-//! The numerical judge: x'' = g(t, x, v), or any first-order equations, integrated by an adaptive Runge-Kutta method, with the
-//! whole path kept.
+//! The numerical judge: x'' = g(t, x, v), or any first-order equations, integrated by an adaptive
+//! Runge-Kutta method, with the whole path kept.
 //!
-//! In: the right side as a closure, a start, an end time, the events to look for. Out: a [`Trajectory`] that
-//! answers x and v, or all values, at any time between, lists the events it met, and says why it stopped. Pure numbers: nothing here
-//! knows where the equation came from, so what is judged and the judge share nothing.
+//! In: the right side as a closure, a start, an end time, the events to look for. Out: a
+//! [`Trajectory`] that answers x and v, or all values, at any time between, lists the events it
+//! met, and says why it stopped. Pure numbers: nothing here knows where the equation came from, so
+//! what is judged and the judge share nothing.
 //!
-//! - [`integrate`] follows one smooth right side; [`integrate_phases`] follows several and switches between them at
-//!   located events: a step is never trusted across a kink such as the first touch of a barrier, the run
-//!   restarts there.
+//! - [`integrate`] follows one smooth right side; [`integrate_phases`] follows several and switches
+//!   between them at located events: a step is never trusted across a kink such as the first touch
+//!   of a barrier, the run restarts there.
 //! - [`integrate_first_order`] follows y' = f(t, y) with any number of values.
-//! - [`Event`] is a function of time and values whose zero matters: [`Event::record`], [`Event::stop`], [`Event::switch`].
+//! - [`Event`] is a function of time and values whose zero matters: [`Event::record`],
+//!   [`Event::stop`], [`Event::switch`].
 //! - [`energy`] finds where a conservative motion turns and how long it takes on the way;
-//! - [`quadrature`] integrates a smooth function, [`root`] finds roots and minima, [`polynomial`] the zeros of a polynomial,
-//!   [`newton`] the solution of several equations.
+//! - [`quadrature`] integrates a smooth function, [`root`] finds roots and minima, [`polynomial`]
+//!   the zeros of a polynomial, [`newton`] the solution of several equations.
 //!
 //! ```
 //! # use lindstedt_numeric as lindstedt;
@@ -30,10 +32,11 @@
 //! # Ok::<(), lindstedt::numeric::ode::IntegrationError>(())
 //! ```
 //!
-//! The method is Verner's most efficient 9(8) pair with its own 8th-order interpolant (J. H. Verner, *Numer.
-//! Algorithms* 53 (2010) 383), as in the crate `differential-equations`; for stiff motions its Radau IIA of order 5. The tolerance
-//! bounds the error of one step, not of the run: on the pendulum the error after a hundred time units is some 60 times the
-//! tolerance. Where the values are an array nothing is allocated in a step but for what is kept of it.
+//! The method is Verner's most efficient 9(8) pair with its own 8th-order interpolant (J. H.
+//! Verner, *Numer. Algorithms* 53 (2010) 383), as in the crate `differential-equations`; for stiff
+//! motions its Radau IIA of order 5. The tolerance bounds the error of one step, not of the run: on
+//! the pendulum the error after a hundred time units is some 60 times the tolerance. Where the
+//! values are an array nothing is allocated in a step but for what is kept of it.
 
 pub mod energy;
 mod event;
@@ -47,7 +50,9 @@ mod scheme;
 mod trajectory;
 
 pub use event::{Action, Direction, Event};
-pub use integrate::{IntegrationError, Options, Phase, integrate, integrate_first_order, integrate_phases};
+pub use integrate::{
+    IntegrationError, Options, Phase, integrate, integrate_first_order, integrate_phases,
+};
 pub use integrate::{Kept, Looks, integrate_through};
 pub use sample::{Point, Sample, Values};
 pub use trajectory::{Occurrence, StopReason, Trajectory};
@@ -69,13 +74,18 @@ mod tests {
     use quadrature::integrate_smooth;
     use root::find_root;
 
-    const REST: State = State { t: 0.0, x: 1.5, v: 0.0 };
+    const REST: State = State {
+        t: 0.0,
+        x: 1.5,
+        v: 0.0,
+    };
 
     fn pendulum(_t: f64, x: f64, _v: f64) -> f64 {
         -x.sin()
     }
 
-    /// The pendulum released at rest from `amplitude`: sin(x/2) = k cn(t)/dn(t), k = sin(amplitude/2).
+    /// The pendulum released at rest from `amplitude`: sin(x/2) = k cn(t)/dn(t), k =
+    /// sin(amplitude/2).
     fn exact_pendulum(amplitude: f64, t: f64) -> (f64, f64) {
         let k = (0.5 * amplitude).sin();
         let (sn, cn, dn, _) = spec_math::cephes64::ellpj(t, k * k);
@@ -90,10 +100,14 @@ mod tests {
         for index in 0..200 {
             let t = 0.1 * f64::from(index);
             let (x, v) = exact_pendulum(1.5, t);
-            assert!((0.5 * v * v - x.cos() + 1.5_f64.cos()).abs() < 1e-13, "energy at {t}");
+            assert!(
+                (0.5 * v * v - x.cos() + 1.5_f64.cos()).abs() < 1e-13,
+                "energy at {t}"
+            );
             let step = 1e-3;
-            let curvature =
-                (exact_pendulum(1.5, t + step).0 - 2.0 * x + exact_pendulum(1.5, t - step).0) / (step * step);
+            let curvature = (exact_pendulum(1.5, t + step).0 - 2.0 * x
+                + exact_pendulum(1.5, t - step).0)
+                / (step * step);
             assert!((curvature + x.sin()).abs() < 1e-6, "equation at {t}");
         }
     }
@@ -102,7 +116,14 @@ mod tests {
     fn the_dense_output_follows_the_elliptic_functions() {
         // (tolerance, largest error allowed up to t = 100): about a hundred times the tolerance.
         for (tolerance, allowed) in [(1e-12, 1e-10), (1e-9, 2e-7), (1e-6, 2e-3)] {
-            let path = integrate(pendulum, REST, 100.0, &[], &Options::with_tolerance(tolerance)).unwrap();
+            let path = integrate(
+                pendulum,
+                REST,
+                100.0,
+                &[],
+                &Options::with_tolerance(tolerance),
+            )
+            .unwrap();
             assert_eq!(path.stop_reason(), StopReason::EndReached);
             assert_eq!(path.end().t, 100.0);
             let mut worst = 0.0_f64;
@@ -120,9 +141,19 @@ mod tests {
         let path = integrate(pendulum, REST, 20.0, &[], &Options::with_tolerance(1e-10)).unwrap();
         let error = |t: f64| (path.at(t).unwrap().0 - exact_pendulum(1.5, t).0).abs();
         let at_knots = path.knots().map(|knot| error(knot.t)).fold(0.0, f64::max);
-        let anywhere = path.samples(5000).map(|state| error(state.t)).fold(0.0, f64::max);
-        assert!(anywhere < 3.0 * at_knots, "{anywhere} between, {at_knots} at the knots");
-        assert!(path.at(-1e-9).is_none() && path.at(20.000_001).is_none() && path.at(f64::NAN).is_none());
+        let anywhere = path
+            .samples(5000)
+            .map(|state| error(state.t))
+            .fold(0.0, f64::max);
+        assert!(
+            anywhere < 3.0 * at_knots,
+            "{anywhere} between, {at_knots} at the knots"
+        );
+        assert!(
+            path.at(-1e-9).is_none()
+                && path.at(20.000_001).is_none()
+                && path.at(f64::NAN).is_none()
+        );
         assert_eq!(path.at(0.0), Some((1.5, 0.0)));
     }
 
@@ -134,7 +165,14 @@ mod tests {
             Event::record(|_, _, v| v).rising(),
             Event::record(|t, _, _| t - 5.0),
         ];
-        let path = integrate(pendulum, REST, 30.0, &events, &Options::with_tolerance(1e-12)).unwrap();
+        let path = integrate(
+            pendulum,
+            REST,
+            30.0,
+            &events,
+            &Options::with_tolerance(1e-12),
+        )
+        .unwrap();
         let times = |event| {
             path.occurrences()
                 .iter()
@@ -149,7 +187,8 @@ mod tests {
                 "crossing {index} at {time}"
             );
         }
-        // v goes from negative to positive at half a period, and not at the start, where it is zero too.
+        // v goes from negative to positive at half a period, and not at the start, where it is zero
+        // too.
         for (index, time) in times(1).enumerate() {
             assert!(
                 (time - quarter * (4 * index + 2) as f64).abs() < 2e-11,
@@ -183,9 +222,14 @@ mod tests {
 
     #[test]
     fn crossings_that_only_just_happen_are_not_missed() {
-        // x = cos t against a wall at x_w: 2 crossings a period, arccos(x_w) before and after each crest.
+        // x = cos t against a wall at x_w: 2 crossings a period, arccos(x_w) before and after each
+        // crest.
         let oscillator = |_: f64, x: f64, _: f64| -x;
-        let start = State { t: 0.0, x: 0.0, v: 1.0 };
+        let start = State {
+            t: 0.0,
+            x: 0.0,
+            v: 1.0,
+        };
         let end_time = 20.0 * std::f64::consts::PI;
         for (tolerance, wall) in [
             (1e-6, 0.9),
@@ -227,28 +271,43 @@ mod tests {
                 &Options::with_tolerance(tolerance),
             )
             .unwrap();
-            assert!(path.occurrences().is_empty(), "wall {} is never reached", 2.0 - wall);
+            assert!(
+                path.occurrences().is_empty(),
+                "wall {} is never reached",
+                2.0 - wall
+            );
         }
     }
 
     /// Pendulum and barrier, x'' + sin x + gamma (x - x_c)_+^(3/2) = 0, switched at the barrier.
     fn pendulum_and_barrier(barrier: f64, gamma: f64) -> Vec<Phase<'static>> {
-        let snapped = move |state: State| State { x: barrier, ..state };
-        let reach = Event::switch(move |_, x, _| x - barrier, move |state| (1, snapped(state))).rising();
-        let leave = Event::switch(move |_, x, _| x - barrier, move |state| (0, snapped(state))).falling();
-        let contact = move |_: f64, x: f64, _: f64| -x.sin() - gamma * (x - barrier).max(0.0).powf(1.5);
-        vec![Phase::new(pendulum, vec![reach]), Phase::new(contact, vec![leave])]
+        let snapped = move |state: State| State {
+            x: barrier,
+            ..state
+        };
+        let reach =
+            Event::switch(move |_, x, _| x - barrier, move |state| (1, snapped(state))).rising();
+        let leave =
+            Event::switch(move |_, x, _| x - barrier, move |state| (0, snapped(state))).falling();
+        let contact =
+            move |_: f64, x: f64, _: f64| -x.sin() - gamma * (x - barrier).max(0.0).powf(1.5);
+        vec![
+            Phase::new(pendulum, vec![reach]),
+            Phase::new(contact, vec![leave]),
+        ]
     }
 
-    /// Time of approach and of contact, from the energy: elliptic F, and T_c = 8 sqrt(q_m) int q / sqrt(H) dw with
-    /// depth = q^2, q = q_m (1 - w^2) and v^2 = (q_m - q) H.
+    /// Time of approach and of contact, from the energy: elliptic F, and T_c = 8 sqrt(q_m) int q /
+    /// sqrt(H) dw with depth = q^2, q = q_m (1 - w^2) and v^2 = (q_m - q) H.
     fn exact_times(amplitude: f64, barrier: f64, gamma: f64) -> (f64, f64) {
         let k = (0.5 * amplitude).sin();
-        let approach =
-            ellip::ellipk(k * k).unwrap() + ellip::ellipf(((0.5 * barrier).sin() / k).asin(), k * k).unwrap();
-        let square = |q: f64| 2.0 * ((barrier + q * q).cos() - amplitude.cos()) - 0.8 * gamma * q.powi(5);
+        let approach = ellip::ellipk(k * k).unwrap()
+            + ellip::ellipf(((0.5 * barrier).sin() / k).asin(), k * k).unwrap();
+        let square =
+            |q: f64| 2.0 * ((barrier + q * q).cos() - amplitude.cos()) - 0.8 * gamma * q.powi(5);
         let deepest = find_root(square, 0.0, 1.0).unwrap();
-        // H from the mean slope of v^2 between q and q_m: a divided difference without cancellation.
+        // H from the mean slope of v^2 between q and q_m: a divided difference without
+        // cancellation.
         let slope = |q: f64| 4.0 * q * (barrier + q * q).sin() + 4.0 * gamma * q.powi(4);
         let quotient = |q: f64| {
             integrate_smooth(|u| slope(q + u * (deepest - q)), 0.0, 1.0, 1e-14)
@@ -268,20 +327,31 @@ mod tests {
     #[test]
     fn twenty_four_crossings_of_the_barrier_at_their_exact_times() {
         let (approach, contact) = exact_times(1.5, 0.323, 1e6);
-        assert!((approach - 2.064_407_608_58).abs() < 1e-11 && (contact - 0.012_106_027_06).abs() < 1e-11);
+        assert!(
+            (approach - 2.064_407_608_58).abs() < 1e-11
+                && (contact - 0.012_106_027_06).abs() < 1e-11
+        );
         let start = State {
             t: 0.0,
             x: -1.5,
             v: 0.0,
         };
-        for (gamma, tolerance, allowed) in [(1e6, 1e-12, 2e-10), (1e9, 1e-12, 3e-10), (1e6, 1e-9, 1.5e-7)] {
+        for (gamma, tolerance, allowed) in [
+            (1e6, 1e-12, 2e-10),
+            (1e9, 1e-12, 3e-10),
+            (1e6, 1e-9, 1.5e-7),
+        ] {
             let (approach, contact) = exact_times(1.5, 0.323, gamma);
             let phases = pendulum_and_barrier(0.323, gamma);
-            let path = integrate_phases(&phases, 0, start, 50.0, &Options::with_tolerance(tolerance)).unwrap();
+            let path =
+                integrate_phases(&phases, 0, start, 50.0, &Options::with_tolerance(tolerance))
+                    .unwrap();
             assert_eq!(path.occurrences().len(), 24, "gamma {gamma}");
             for (index, found) in path.occurrences().iter().enumerate() {
                 let exit = index % 2;
-                let time = approach + (index / 2) as f64 * (2.0 * approach + contact) + exit as f64 * contact;
+                let time = approach
+                    + (index / 2) as f64 * (2.0 * approach + contact)
+                    + exit as f64 * contact;
                 assert_eq!((found.phase, found.event), (exit, 0));
                 assert!(
                     (found.state.t - time).abs() < allowed,
@@ -303,8 +373,20 @@ mod tests {
                 x: 0.323,
                 v: speed,
             };
-            let path = integrate_phases(&pendulum_and_barrier(0.323, 1e3), 1, start, 1.0, &Options::default()).unwrap();
-            assert_eq!(path.occurrences().len(), 1, "speed {speed}: {:?}", path.occurrences());
+            let path = integrate_phases(
+                &pendulum_and_barrier(0.323, 1e3),
+                1,
+                start,
+                1.0,
+                &Options::default(),
+            )
+            .unwrap();
+            assert_eq!(
+                path.occurrences().len(),
+                1,
+                "speed {speed}: {:?}",
+                path.occurrences()
+            );
             let exit = path.occurrences()[0].state;
             let expected = 2.0 * speed / 0.323_f64.sin();
             // An excursion of speed^2 below the rounding of x is left at once.
@@ -319,8 +401,8 @@ mod tests {
 
     #[test]
     fn a_bouncing_ball_stalls_where_its_bounces_accumulate() {
-        // Dropped from height 1/2 with restitution 1/2: first touch at t = 1, the bounces end at t = 1 + 2 (1/2 +
-        // 1/4 + ...).
+        // Dropped from height 1/2 with restitution 1/2: first touch at t = 1, the bounces end at t
+        // = 1 + 2 (1/2 + 1/4 + ...).
         let rebound = Event::switch(
             |_, x, _| x,
             |state| {
@@ -335,7 +417,11 @@ mod tests {
             },
         )
         .falling();
-        let start = State { t: 0.0, x: 0.5, v: 0.0 };
+        let start = State {
+            t: 0.0,
+            x: 0.5,
+            v: 0.0,
+        };
         let path = integrate(|_, _, _| -1.0, start, 10.0, &[rebound], &Options::default()).unwrap();
         for (bounce, time) in [1.0, 2.0, 2.5, 2.75].into_iter().enumerate() {
             assert!((path.occurrences()[bounce].state.t - time).abs() < 1e-11);
@@ -351,7 +437,11 @@ mod tests {
     #[test]
     fn a_run_that_cannot_go_on_says_when_and_keeps_what_it_has() {
         // x = 1/(1 - t)^2 escapes at t = 1.
-        let start = State { t: 0.0, x: 1.0, v: 2.0 };
+        let start = State {
+            t: 0.0,
+            x: 1.0,
+            v: 2.0,
+        };
         let path = integrate(|_, x, _| 6.0 * x * x, start, 3.0, &[], &Options::default()).unwrap();
         assert!(
             !path.is_complete() && (path.end().t - 1.0).abs() < 1e-3,
@@ -361,8 +451,19 @@ mod tests {
         assert!((path.at(0.5).unwrap().0 - 4.0).abs() < 1e-7);
 
         // Beyond x = 1 there is no acceleration; x = t gets there at t = 1.
-        let start = State { t: 0.0, x: 0.0, v: 1.0 };
-        let path = integrate(|_, x, _| 0.0 * (1.0 - x).sqrt(), start, 3.0, &[], &Options::default()).unwrap();
+        let start = State {
+            t: 0.0,
+            x: 0.0,
+            v: 1.0,
+        };
+        let path = integrate(
+            |_, x, _| 0.0 * (1.0 - x).sqrt(),
+            start,
+            3.0,
+            &[],
+            &Options::default(),
+        )
+        .unwrap();
         let StopReason::NonFinite { time } = path.stop_reason() else {
             panic!("{}", path.stop_reason())
         };
@@ -374,7 +475,10 @@ mod tests {
             ..Options::default()
         };
         let path = integrate(pendulum, REST, 30.0, &[], &few).unwrap();
-        assert_eq!(path.stop_reason(), StopReason::MaximumSteps { time: path.end().t });
+        assert_eq!(
+            path.stop_reason(),
+            StopReason::MaximumSteps { time: path.end().t }
+        );
 
         let broken = Event::record(|t, _, _| (1.0 - t).ln());
         let path = integrate(pendulum, REST, 30.0, &[broken], &Options::default()).unwrap();
@@ -383,11 +487,19 @@ mod tests {
 
     #[test]
     fn what_cannot_begin_is_refused() {
-        let refuse =
-            |start, end_time, options: Options| integrate(pendulum, start, end_time, &[], &options).unwrap_err();
+        let refuse = |start, end_time, options: Options| {
+            integrate(pendulum, start, end_time, &[], &options).unwrap_err()
+        };
         let usual = Options::default();
         assert!(matches!(
-            refuse(State { x: f64::NAN, ..REST }, 1.0, usual),
+            refuse(
+                State {
+                    x: f64::NAN,
+                    ..REST
+                },
+                1.0,
+                usual
+            ),
             IntegrationError::NotFinite { .. }
         ));
         assert!(matches!(
@@ -408,20 +520,30 @@ mod tests {
             maximum_step: -1.0,
             ..usual
         };
-        assert!(matches!(refuse(REST, 1.0, backwards), IntegrationError::MaximumStep(_)));
+        assert!(matches!(
+            refuse(REST, 1.0, backwards),
+            IntegrationError::MaximumStep(_)
+        ));
         let nowhere = |_: f64, x: f64, _: f64| (x - 2.0).sqrt();
         let refused = integrate(nowhere, REST, 1.0, &[], &usual).unwrap_err();
-        assert!(matches!(refused, IntegrationError::AccelerationNotFinite { .. }));
-        let refused = integrate_phases(&pendulum_and_barrier(0.323, 1e6), 2, REST, 1.0, &usual).unwrap_err();
-        assert_eq!(refused, IntegrationError::UnknownPhase { phase: 2, count: 2 });
+        assert!(matches!(
+            refused,
+            IntegrationError::AccelerationNotFinite { .. }
+        ));
+        let refused =
+            integrate_phases(&pendulum_and_barrier(0.323, 1e6), 2, REST, 1.0, &usual).unwrap_err();
+        assert_eq!(
+            refused,
+            IntegrationError::UnknownPhase { phase: 2, count: 2 }
+        );
         let path = integrate(pendulum, REST, 0.0, &[], &usual).unwrap();
         assert_eq!((path.end(), path.at(0.0)), (REST, Some((1.5, 0.0))));
     }
 
     #[test]
     fn scales_of_amplitude_and_time_change_nothing() {
-        // x'' = -omega^2 x from `amplitude`: omega from 1e-6 to 1e9, amplitude down to 1e-9 with a matching
-        // tolerance.
+        // x'' = -omega^2 x from `amplitude`: omega from 1e-6 to 1e9, amplitude down to 1e-9 with a
+        // matching tolerance.
         for (omega, amplitude) in [(1e-6, 1.0), (1e9, 1.0), (1.0, 1e-9), (1e3, 1e6)] {
             let options = Options {
                 absolute_tolerance: 1e-12 * amplitude,
@@ -432,7 +554,14 @@ mod tests {
                 x: amplitude,
                 v: 0.0,
             };
-            let path = integrate(|_, x, _| -omega * omega * x, start, 20.0 / omega, &[], &options).unwrap();
+            let path = integrate(
+                |_, x, _| -omega * omega * x,
+                start,
+                20.0 / omega,
+                &[],
+                &options,
+            )
+            .unwrap();
             for state in path.samples(200) {
                 assert!(
                     (state.x / amplitude - (omega * state.t).cos()).abs() < 1e-10,

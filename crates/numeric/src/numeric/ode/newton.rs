@@ -1,6 +1,7 @@
 //! Newton's method for as many equations as there are unknowns.
 //!
-//! In: a start, the residual of the equations with its Jacobian, and a judgement of each step. Out: the solution, or nothing.
+//! In: a start, the residual of the equations with its Jacobian, and a judgement of each step. Out:
+//! the solution, or nothing.
 //!
 //! ```
 //! # use lindstedt_numeric as lindstedt;
@@ -35,9 +36,10 @@ pub enum Progress {
     Lost,
 }
 
-/// The solution to which at most so many steps of Newton's method lead from a start. `equations` gives the residual and its
-/// Jacobian at a place, `judged` hears the end of each step and the step that was subtracted. `None` is the answer where the
-/// equations have no value, their Jacobian no inverse, or the steps do not settle.
+/// The solution to which at most so many steps of Newton's method lead from a start. `equations`
+/// gives the residual and its Jacobian at a place, `judged` hears the end of each step and the step
+/// that was subtracted. `None` is the answer where the equations have no value, their Jacobian no
+/// inverse, or the steps do not settle.
 pub fn newton<D>(
     start: OVector<f64, D>,
     most: usize,
@@ -75,11 +77,12 @@ mod tests {
                 let value = x.map(|x| x * x - c);
                 Some((value, DMatrix::from_diagonal(&(2.0 * x))))
             };
-            let judged = |x: &DVector<f64>, step: &DVector<f64>| match step.amax() <= 1e-14 * x.amax() {
-                true => Progress::Settled,
-                false if x[0] > 1e3 => Progress::Lost,
-                false => Progress::Going,
-            };
+            let judged =
+                |x: &DVector<f64>, step: &DVector<f64>| match step.amax() <= 1e-14 * x.amax() {
+                    true => Progress::Settled,
+                    false if x[0] > 1e3 => Progress::Lost,
+                    false => Progress::Going,
+                };
             newton(DVector::from_element(1, start), most, equations, judged).map(|x| x[0])
         };
         assert!(root(2.0, 1.0, 20).is_some_and(|x| (x - 2.0_f64.sqrt()).abs() < 1e-15));

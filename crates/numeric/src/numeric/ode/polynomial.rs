@@ -1,8 +1,9 @@
 //! The real zeros of a polynomial in doubles.
 //!
-//! In: coefficients and an interval. Out: the zeros in it, from left to right, each once, and whether the sign changes there.
-//! Between two neighbouring zeros of its derivative a polynomial has at most one zero, so the zeros are found from the
-//! linear derivative upwards, each by [`find_root`].
+//! In: coefficients and an interval. Out: the zeros in it, from left to right, each once, and
+//! whether the sign changes there. Between two neighbouring zeros of its derivative a polynomial
+//! has at most one zero, so the zeros are found from the linear derivative upwards, each by
+//! [`find_root`].
 //!
 //! ```
 //! # use lindstedt_numeric as lindstedt;
@@ -25,13 +26,18 @@ pub struct RealZero {
     pub crosses: bool,
 }
 
-/// The zeros of a polynomial, lowest coefficient first, between two ends, which may be infinite. Two zeros so close that the
-/// polynomial between them is below its rounding are one at which the sign does not change.
+/// The zeros of a polynomial, lowest coefficient first, between two ends, which may be infinite.
+/// Two zeros so close that the polynomial between them is below its rounding are one at which the
+/// sign does not change.
 pub fn real_zeros(coefficients: &[f64], ends: [f64; 2]) -> Vec<RealZero> {
-    let Some(degree) = coefficients.iter().rposition(|coefficient| *coefficient != 0.0) else {
+    let Some(degree) = coefficients
+        .iter()
+        .rposition(|coefficient| *coefficient != 0.0)
+    else {
         return vec![];
     };
-    // Fujiwara's bound, 2 max |c_k/c_n|^(1/(n - k)); the powers of x alone have all their zeros at 0.
+    // Fujiwara's bound, 2 max |c_k/c_n|^(1/(n - k)); the powers of x alone have all their zeros
+    // at 0.
     let bound = |k: usize| {
         (coefficients[k] / coefficients[degree])
             .abs()
@@ -51,10 +57,22 @@ pub fn real_zeros(coefficients: &[f64], ends: [f64; 2]) -> Vec<RealZero> {
         true => farthest,
         false => bisect(is_finite, 0.0, farthest, Until::Width(0.0))[0],
     };
-    let [low, high] = ends.map(|end| if end.is_infinite() { farthest.copysign(end) } else { end });
+    let [low, high] = ends.map(|end| {
+        if end.is_infinite() {
+            farthest.copysign(end)
+        } else {
+            end
+        }
+    });
     let mut derivatives = vec![coefficients[..=degree].to_vec()];
     while let Some(last) = derivatives.last().filter(|last| last.len() > 2) {
-        derivatives.push(last.iter().enumerate().skip(1).map(|(k, c)| k as f64 * c).collect());
+        derivatives.push(
+            last.iter()
+                .enumerate()
+                .skip(1)
+                .map(|(k, c)| k as f64 * c)
+                .collect(),
+        );
     }
     let mut zeros: Vec<RealZero> = vec![];
     for polynomial in derivatives.iter().rev() {
@@ -73,7 +91,12 @@ fn zeros_between(polynomial: &[f64], places: &[f64]) -> Vec<RealZero> {
     /// Of the sum of the sizes of all terms: a smaller value is rounding.
     const ROUNDING: f64 = 1e-14;
     let value = |x: f64| polynomial.iter().rev().fold(0.0, |sum, c| sum * x + c);
-    let size = |x: f64| polynomial.iter().rev().fold(0.0, |sum, c| sum * x.abs() + c.abs());
+    let size = |x: f64| {
+        polynomial
+            .iter()
+            .rev()
+            .fold(0.0, |sum, c| sum * x.abs() + c.abs())
+    };
     let mut zeros = vec![];
     // The last place with a sign, and the first after it without one.
     let (mut last, mut touched): (Option<(f64, f64)>, Option<f64>) = (None, None);
@@ -100,7 +123,10 @@ fn zeros_between(polynomial: &[f64], places: &[f64]) -> Vec<RealZero> {
         }));
         (last, touched) = (Some((x, here)), None);
     }
-    zeros.extend(touched.map(|place| RealZero { place, crosses: false }));
+    zeros.extend(touched.map(|place| RealZero {
+        place,
+        crosses: false,
+    }));
     zeros
 }
 
@@ -111,7 +137,9 @@ mod tests {
     const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
     fn crossings(coefficients: &[f64], ends: [f64; 2]) -> Vec<f64> {
-        let zeros = real_zeros(coefficients, ends).into_iter().filter(|zero| zero.crosses);
+        let zeros = real_zeros(coefficients, ends)
+            .into_iter()
+            .filter(|zero| zero.crosses);
         zeros.map(|zero| zero.place).collect()
     }
 
@@ -127,7 +155,10 @@ mod tests {
             let found = crossings(&quartic, ends);
             assert_eq!(found.len(), expected.len(), "{found:?}");
             assert!(
-                found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12),
+                found
+                    .iter()
+                    .zip(expected)
+                    .all(|(a, b)| (a - b).abs() < 1e-12),
                 "{found:?}"
             );
         }
@@ -136,7 +167,8 @@ mod tests {
         }
     }
 
-    /// `x^4000 = 2`, whose degree does not meet the stack, and whose powers overflow below the bound.
+    /// `x^4000 = 2`, whose degree does not meet the stack, and whose powers overflow below the
+    /// bound.
     #[test]
     fn high_powers_have_their_zeros() {
         let mut high = vec![0.0; 4001];
@@ -152,14 +184,26 @@ mod tests {
     fn multiple_zeros_are_one() {
         let zero = |place, crosses| RealZero { place, crosses };
         assert_eq!(real_zeros(&[0.0, 1.0], EVERYWHERE), [zero(0.0, true)]);
-        assert_eq!(real_zeros(&[0.0, 0.0, 0.0, 2.0], EVERYWHERE), [zero(0.0, true)]);
-        assert_eq!(real_zeros(&[0.0, 0.0, -1.0], EVERYWHERE), [zero(0.0, false)]);
+        assert_eq!(
+            real_zeros(&[0.0, 0.0, 0.0, 2.0], EVERYWHERE),
+            [zero(0.0, true)]
+        );
+        assert_eq!(
+            real_zeros(&[0.0, 0.0, -1.0], EVERYWHERE),
+            [zero(0.0, false)]
+        );
         // (x - 1/10)^2 (x + 1)
         let [single, double] = real_zeros(&[0.01, -0.19, 0.8, 1.0], EVERYWHERE)[..] else {
             panic!("not two")
         };
-        assert!(single.crosses && (single.place + 1.0).abs() < 1e-15, "{single:?}");
-        assert!(!double.crosses && (double.place - 0.1).abs() < 1e-15, "{double:?}");
+        assert!(
+            single.crosses && (single.place + 1.0).abs() < 1e-15,
+            "{single:?}"
+        );
+        assert!(
+            !double.crosses && (double.place - 0.1).abs() < 1e-15,
+            "{double:?}"
+        );
         assert_eq!(real_zeros(&[-1.0, 1.0], [1.0, 2.0]), [zero(1.0, false)]);
     }
 }

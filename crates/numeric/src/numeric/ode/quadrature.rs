@@ -2,12 +2,13 @@
 //!
 //! In: a function, an interval, a tolerance. Out: value and error estimate, or why there is none.
 //!
-//! Gauss-Legendre with 20 points on a panel and on its two halves; the difference of the two is the error estimate
-//! of the panel (of its coarse value: the halves, which are what is added up, are far better). The panel with the
-//! largest estimate is halved until the estimates together are below the tolerance times the integral of |f|.
+//! Gauss-Legendre with 20 points on a panel and on its two halves; the difference of the two is the
+//! error estimate of the panel (of its coarse value: the halves, which are what is added up, are
+//! far better). The panel with the largest estimate is halved until the estimates together are
+//! below the tolerance times the integral of |f|.
 //!
-//! Singular ends are to be substituted away first: `x = -A + s^2` makes the time integral of an energy
-//! `dx / sqrt(2 (V(A) - V(x)))` smooth.
+//! Singular ends are to be substituted away first: `x = -A + s^2` makes the time integral of an
+//! energy `dx / sqrt(2 (V(A) - V(x)))` smooth.
 //!
 //! ```
 //! # use lindstedt_numeric as lindstedt;
@@ -39,7 +40,9 @@ pub enum QuadratureError {
     #[error("the quadrature tolerance must be a positive number, not {0}")]
     Tolerance(f64),
     /// The integrand has no finite value at this point.
-    #[error("the integrand has no finite value at {at}: split the interval there or substitute the singularity away")]
+    #[error(
+        "the integrand has no finite value at {at}: split the interval there or substitute the singularity away"
+    )]
     NonFinite {
         /// Where.
         at: f64,
@@ -69,12 +72,13 @@ static RULE: LazyLock<GaussLegendre> = LazyLock::new(|| GaussLegendre::new(POINT
 
 /// Integral of `function` from `from` to `to`, and its absolute error estimate.
 ///
-/// `tolerance` is relative to the integral of |f|; below 1e-14 rounding decides and 1e-14 is used. `from > to` gives
-/// the negative integral.
+/// `tolerance` is relative to the integral of |f|; below 1e-14 rounding decides and 1e-14 is used.
+/// `from > to` gives the negative integral.
 ///
 /// # Errors
-/// [`QuadratureError`]: an infinite interval, a tolerance that is no positive number, an integrand without a finite
-/// value, or no convergence within 1000 panels; the last one carries the best value.
+/// [`QuadratureError`]: an infinite interval, a tolerance that is no positive number, an integrand
+/// without a finite value, or no convergence within 1000 panels; the last one carries the best
+/// value.
 pub fn integrate_smooth(
     function: impl FnMut(f64) -> f64,
     from: f64,
@@ -84,11 +88,12 @@ pub fn integrate_smooth(
     integrate_piecewise(function, &[from, to], tolerance)
 }
 
-/// Integral of a `function` that is smooth between neighbouring `ends`, from the first of them to the last, and its absolute error
-/// estimate.
+/// Integral of a `function` that is smooth between neighbouring `ends`, from the first of them to
+/// the last, and its absolute error estimate.
 ///
-/// `tolerance` is relative to the integral of |f| over all pieces, so that one that adds next to nothing, where the integrand
-/// may be little but rounding, is not halved for the sake of its own size. Otherwise as [`integrate_smooth`].
+/// `tolerance` is relative to the integral of |f| over all pieces, so that one that adds next to
+/// nothing, where the integrand may be little but rounding, is not halved for the sake of its own
+/// size. Otherwise as [`integrate_smooth`].
 ///
 /// # Errors
 /// As [`integrate_smooth`], with a panel more for every further piece.
@@ -108,8 +113,9 @@ pub fn integrate_piecewise(
     integrate_within(function, ends, [tolerance, 0.0], MAXIMUM_PANELS)
 }
 
-/// Integral of a smooth `function`, which is a part of a `whole` and is asked for to `tolerance` times the larger of the two: near
-/// the end of an interval where the integrand is a difference of nearly equal numbers, its own size would ask for digits that it lacks.
+/// Integral of a smooth `function`, which is a part of a `whole` and is asked for to `tolerance`
+/// times the larger of the two: near the end of an interval where the integrand is a difference of
+/// nearly equal numbers, its own size would ask for digits that it lacks.
 ///
 /// # Errors
 /// As [`integrate_smooth`].
@@ -123,8 +129,9 @@ pub fn integrate_part(
     Ok(integrate_within(function, &[from, to], tolerances, MAXIMUM_PANELS)?.0)
 }
 
-/// As [`integrate_piecewise`] with the relative and the absolute tolerance, of which the larger counts, and with as many panels as
-/// `most_panels` for the first piece, for who halves the interval otherwise.
+/// As [`integrate_piecewise`] with the relative and the absolute tolerance, of which the larger
+/// counts, and with as many panels as `most_panels` for the first piece, for who halves the
+/// interval otherwise.
 ///
 /// # Errors
 /// As [`integrate_piecewise`].
@@ -171,7 +178,10 @@ pub(crate) fn integrate_within(
             return Ok((0.0, 0.0));
         };
         let middle = panel.middle();
-        if panels.len() >= most || middle <= panel.from.min(panel.to) || middle >= panel.from.max(panel.to) {
+        if panels.len() >= most
+            || middle <= panel.from.min(panel.to)
+            || middle >= panel.from.max(panel.to)
+        {
             return Err(QuadratureError::NotConverged {
                 value: sum(Panel::value),
                 error_estimate: sum(|panel| panel.error),
@@ -187,8 +197,8 @@ pub(crate) fn integrate_within(
     }
 }
 
-/// Nodes and weights of the 20-point Gauss-Legendre rule carried to `[from, to]`, for sums that need the points
-/// themselves, such as a least-squares fit.
+/// Nodes and weights of the 20-point Gauss-Legendre rule carried to `[from, to]`, for sums that
+/// need the points themselves, such as a least-squares fit.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -214,7 +224,12 @@ struct Panel {
 }
 
 impl Panel {
-    fn split(function: &mut impl FnMut(f64) -> f64, from: f64, to: f64, coarse: f64) -> Result<Self, QuadratureError> {
+    fn split(
+        function: &mut impl FnMut(f64) -> f64,
+        from: f64,
+        to: f64,
+        coarse: f64,
+    ) -> Result<Self, QuadratureError> {
         let middle = 0.5 * (from + to);
         let (left, left_magnitude) = gauss(function, from, middle)?;
         let (right, right_magnitude) = gauss(function, middle, to)?;
@@ -239,7 +254,11 @@ impl Panel {
 }
 
 /// Integral of f and of |f| by one application of the rule.
-fn gauss(function: &mut impl FnMut(f64) -> f64, from: f64, to: f64) -> Result<(f64, f64), QuadratureError> {
+fn gauss(
+    function: &mut impl FnMut(f64) -> f64,
+    from: f64,
+    to: f64,
+) -> Result<(f64, f64), QuadratureError> {
     let (mut sum, mut magnitude) = (0.0, 0.0);
     for (at, weight) in nodes_and_weights(from, to) {
         let value = function(at);
@@ -284,7 +303,10 @@ mod tests {
         for (name, function, from, to, exact) in table {
             let (value, error_estimate) = integrate_smooth(function, from, to, 1e-12).unwrap();
             let error = (value - exact).abs();
-            assert!(error <= 1e-12 * exact.abs().max(1.0), "{name}: {value} against {exact}");
+            assert!(
+                error <= 1e-12 * exact.abs().max(1.0),
+                "{name}: {value} against {exact}"
+            );
             assert!(
                 error <= error_estimate + 1e-15 * exact.abs().max(1.0),
                 "{name}: error {error} above its estimate {error_estimate}"
@@ -297,20 +319,29 @@ mod tests {
         for m in [0.0, 0.3, 0.9, 0.999_999] {
             // 1 - m sin^2 written without cancellation.
             let integrand = |angle: f64| 1.0 / (1.0 - m + m * angle.cos().powi(2)).sqrt();
-            let (value, _) = integrate_smooth(integrand, 0.0, std::f64::consts::FRAC_PI_2, 1e-13).unwrap();
+            let (value, _) =
+                integrate_smooth(integrand, 0.0, std::f64::consts::FRAC_PI_2, 1e-13).unwrap();
             let exact = ellip::ellipk(m).unwrap();
-            assert!((value / exact - 1.0).abs() < 1e-13, "m = {m}: {value} against {exact}");
+            assert!(
+                (value / exact - 1.0).abs() < 1e-13,
+                "m = {m}: {value} against {exact}"
+            );
         }
     }
 
     #[test]
     fn what_cannot_be_integrated_is_refused() {
-        let refuse = |function: fn(f64) -> f64, from, to| integrate_smooth(function, from, to, 1e-10).unwrap_err();
+        let refuse = |function: fn(f64) -> f64, from, to| {
+            integrate_smooth(function, from, to, 1e-10).unwrap_err()
+        };
         assert!(matches!(
             refuse(f64::exp, 0.0, f64::INFINITY),
             QuadratureError::Interval { .. }
         ));
-        assert!(matches!(refuse(f64::ln, -1.0, 1.0), QuadratureError::NonFinite { .. }));
+        assert!(matches!(
+            refuse(f64::ln, -1.0, 1.0),
+            QuadratureError::NonFinite { .. }
+        ));
         assert!(matches!(
             refuse(|x| 1.0 / x, 0.0, 1.0),
             QuadratureError::NotConverged { .. }
@@ -327,13 +358,18 @@ mod tests {
         ));
     }
 
-    /// Where it is all but a jump its argument is rounded to nine digits, and the pieces there have none of their own to lose.
+    /// Where it is all but a jump its argument is rounded to nine digits, and the pieces there have
+    /// none of their own to lose.
     #[test]
     fn a_piece_that_adds_nothing_is_not_halved_for_its_rounding() {
         let places = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1];
         let mirrored = places.iter().rev().map(|place| -place);
         let cuts = mirrored.chain(places).map(|place| f64::acos(-place));
-        let ends: Vec<f64> = [0.0].into_iter().chain(cuts).chain([std::f64::consts::PI]).collect();
+        let ends: Vec<f64> = [0.0]
+            .into_iter()
+            .chain(cuts)
+            .chain([std::f64::consts::PI])
+            .collect();
         let mut calls = 0;
         let integrand = |theta: f64| {
             calls += 1;

@@ -1,12 +1,14 @@
-//! Roots and minima of a function of one real variable, and the place where a property ends, from a bracket.
+//! Roots and minima of a function of one real variable, and the place where a property ends, from a
+//! bracket.
 //!
 //! In: a continuous function and an interval. Out: the point, to the last bits of a double.
 //! Where there is no value but only a yes or a no, [`bisect`] halves the interval.
 //!
-//! [`find_root`]: Chandrupatla's hybrid of inverse quadratic interpolation and bisection (T. R. Chandrupatla, *Adv.
-//! Eng. Software* 28 (1997) 145): the interpolation is taken only where the three points lie on a curve that is
-//! monotone in both directions, `xi = (x1 - x2)/(x3 - x2)`, `phi = (f1 - f2)/(f3 - f2)`, `phi^2 < xi` and `(1 -
-//! phi)^2 < 1 - xi`. It never leaves the bracket and never needs more than a few times the steps of bisection.
+//! [`find_root`]: Chandrupatla's hybrid of inverse quadratic interpolation and bisection (T. R.
+//! Chandrupatla, *Adv. Eng. Software* 28 (1997) 145): the interpolation is taken only where the
+//! three points lie on a curve that is monotone in both directions, `xi = (x1 - x2)/(x3 - x2)`,
+//! `phi = (f1 - f2)/(f3 - f2)`, `phi^2 < xi` and `(1 - phi)^2 < 1 - xi`. It never leaves the
+//! bracket and never needs more than a few times the steps of bisection.
 //!
 //! ```
 //! # use lindstedt_numeric as lindstedt;
@@ -46,12 +48,12 @@ pub enum RootError {
     },
 }
 
-/// The point between `a` and `b` (in either order) where the continuous function changes sign, as closely as doubles
-/// allow; an end at which the function is exactly zero is returned as it is.
+/// The point between `a` and `b` (in either order) where the continuous function changes sign, as
+/// closely as doubles allow; an end at which the function is exactly zero is returned as it is.
 ///
 /// # Errors
-/// [`RootError::NotBracketed`] when both ends have the same sign, [`RootError::NonFinite`] when an end or a value is
-/// not a finite number.
+/// [`RootError::NotBracketed`] when both ends have the same sign, [`RootError::NonFinite`] when an
+/// end or a value is not a finite number.
 pub fn find_root(mut function: impl FnMut(f64) -> f64, a: f64, b: f64) -> Result<f64, RootError> {
     let mut value_at = |x: f64| {
         let value = if x.is_finite() { function(x) } else { f64::NAN };
@@ -61,7 +63,8 @@ pub fn find_root(mut function: impl FnMut(f64) -> f64, a: f64, b: f64) -> Result
             Err(RootError::NonFinite { at: x })
         }
     };
-    // (x1, f1) is the newest point, (x2, f2) the other end of the bracket, (x3, f3) the point dropped last.
+    // (x1, f1) is the newest point, (x2, f2) the other end of the bracket, (x3, f3) the point
+    // dropped last.
     let (mut x1, mut f1) = (b, value_at(b)?);
     let (mut x2, mut f2) = (a, value_at(a)?);
     if f1 == 0.0 || f2 == 0.0 {
@@ -87,7 +90,11 @@ pub fn find_root(mut function: impl FnMut(f64) -> f64, a: f64, b: f64) -> Result
             (x2, f2) = (x1, f1);
         }
         (x1, f1) = (x, f);
-        let (best, best_value) = if f1.abs() <= f2.abs() { (x1, f1) } else { (x2, f2) };
+        let (best, best_value) = if f1.abs() <= f2.abs() {
+            (x1, f1)
+        } else {
+            (x2, f2)
+        };
         let width = (x2 - x1).abs();
         // Two units in the last place: below that the middle of the bracket is one of its ends.
         let resolution = f64::EPSILON * best.abs() + f64::MIN_POSITIVE;
@@ -97,7 +104,8 @@ pub fn find_root(mut function: impl FnMut(f64) -> f64, a: f64, b: f64) -> Result
         let xi = (x1 - x2) / (x3 - x2);
         let phi = (f1 - f2) / (f3 - f2);
         fraction = if phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi {
-            f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
+            f1 / (f2 - f1) * f3 / (f2 - f3)
+                + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
         } else {
             0.5
         };
@@ -115,8 +123,9 @@ pub enum Until {
     Width(f64),
 }
 
-/// The last place seen at which a property holds and the first seen at which it does not, by halving the interval between
-/// one where it holds and one where it does not (in either order). The ends themselves are not tried.
+/// The last place seen at which a property holds and the first seen at which it does not, by
+/// halving the interval between one where it holds and one where it does not (in either order). The
+/// ends themselves are not tried.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -125,7 +134,12 @@ pub enum Until {
 /// let [defined, undefined] = bisect(|x: f64| (2.0 - x).sqrt().is_finite(), 0.0, 3.0, Until::Width(0.0));
 /// assert_eq!([defined, undefined], [2.0, 2.0_f64.next_up()]);
 /// ```
-pub fn bisect(mut holds: impl FnMut(f64) -> bool, inside: f64, outside: f64, until: Until) -> [f64; 2] {
+pub fn bisect(
+    mut holds: impl FnMut(f64) -> bool,
+    inside: f64,
+    outside: f64,
+    until: Until,
+) -> [f64; 2] {
     let Ok(ends) = try_bisect(|x| Ok::<_, Infallible>(holds(x)), inside, outside, until);
     ends
 }
@@ -158,9 +172,10 @@ pub fn try_bisect<E>(
     }
 }
 
-/// The point between `a` and `b` where the function is least, by golden section, stopping at once where it is not
-/// positive: what a search for a near miss wants. The function should have one minimum there. Returns the point and
-/// the value; the point is good to about the square root of the rounding error, the value to the rounding error.
+/// The point between `a` and `b` where the function is least, by golden section, stopping at once
+/// where it is not positive: what a search for a near miss wants. The function should have one
+/// minimum there. Returns the point and the value; the point is good to about the square root of
+/// the rounding error, the value to the rounding error.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -178,7 +193,10 @@ pub fn find_minimum(mut function: impl FnMut(f64) -> f64, a: f64, b: f64) -> (f6
     let mut value_right = function(inner_right);
     // 0.618^80 < 2^-52: beyond that the bracket has no width.
     for _ in 0..80 {
-        if value_left <= 0.0 || value_right <= 0.0 || right - left <= f64::EPSILON * (left.abs() + right.abs()) {
+        if value_left <= 0.0
+            || value_right <= 0.0
+            || right - left <= f64::EPSILON * (left.abs() + right.abs())
+        {
             break;
         }
         if value_left < value_right {
@@ -210,11 +228,23 @@ mod tests {
     #[test]
     fn known_roots_to_the_last_bits() {
         let table: [Case; 7] = [
-            ("square root of two", |x| x * x - 2.0, 0.0, 2.0, 2.0_f64.sqrt()),
+            (
+                "square root of two",
+                |x| x * x - 2.0,
+                0.0,
+                2.0,
+                2.0_f64.sqrt(),
+            ),
             ("pi", f64::sin, 3.0, 4.0, std::f64::consts::PI),
             ("triple root", |x| (x - 0.3).powi(3), -1.0, 1.0, 0.3),
             ("end of the interval", |x| x, 0.0, 1.0, 0.0),
-            ("a step", |x| if x < 0.323 { -1.0 } else { 1.0 }, -1.0, 1.0, 0.323),
+            (
+                "a step",
+                |x| if x < 0.323 { -1.0 } else { 1.0 },
+                -1.0,
+                1.0,
+                0.323,
+            ),
             (
                 "steep and flat",
                 |x| (-1e6 * x).exp_m1() + 1e-6,
@@ -242,7 +272,10 @@ mod tests {
                 x.powi(exponent) - 0.1
             };
             find_root(function, 0.0, 1.0).unwrap();
-            assert!(evaluations < 40, "power {exponent}: {evaluations} evaluations");
+            assert!(
+                evaluations < 40,
+                "power {exponent}: {evaluations} evaluations"
+            );
         }
     }
 
@@ -265,7 +298,10 @@ mod tests {
     #[test]
     fn a_property_ends_between_neighbours_or_as_early_as_asked() {
         let below = |x: f64| x < 0.3;
-        assert_eq!(bisect(below, -1.0, 1.0, Until::Width(0.0)), [0.3_f64.next_down(), 0.3]);
+        assert_eq!(
+            bisect(below, -1.0, 1.0, Until::Width(0.0)),
+            [0.3_f64.next_down(), 0.3]
+        );
         let above = bisect(|x| !below(x), 1.0, -1.0, Until::Halvings(2000));
         assert_eq!(above, [0.3, 0.3_f64.next_down()]);
         assert_eq!(bisect(below, 0.0, 1.0, Until::Halvings(2)), [0.25, 0.5]);

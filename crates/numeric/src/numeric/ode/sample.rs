@@ -1,11 +1,12 @@
-//! What is followed: values at a time, as first-order equations have them or as the displacement and velocity of one coordinate.
+//! What is followed: values at a time, as first-order equations have them or as the displacement
+//! and velocity of one coordinate.
 
 use std::fmt::Debug;
 
 use super::State;
 
-/// The values of first-order equations: an array, with which a step allocates nothing, or a vector where their number is known
-/// at run time only.
+/// The values of first-order equations: an array, with which a step allocates nothing, or a vector
+/// where their number is known at run time only.
 pub trait Values: differential_equations::traits::State<f64> + AsRef<[f64]> + AsMut<[f64]> {}
 
 impl<const N: usize> Values for [f64; N] {}
@@ -26,9 +27,13 @@ pub trait Sample: Clone + Debug {
     /// The values at it.
     fn values(&self) -> Self::Values;
 
-    /// The values at `t` within a step of the implicit method, from those at its ends, where that is better than the method's
-    /// own interpolant.
-    fn between(_from: (f64, &Self::Values), _to: (f64, &Self::Values), _t: f64) -> Option<Self::Values> {
+    /// The values at `t` within a step of the implicit method, from those at its ends, where that
+    /// is better than the method's own interpolant.
+    fn between(
+        _from: (f64, &Self::Values),
+        _to: (f64, &Self::Values),
+        _t: f64,
+    ) -> Option<Self::Values> {
         None
     }
 
@@ -51,7 +56,10 @@ impl<Y: Values> Sample for Point<Y> {
     type Values = Y;
 
     fn new(t: f64, values: &Y) -> Self {
-        Self { t, y: values.clone() }
+        Self {
+            t,
+            y: values.clone(),
+        }
     }
 
     fn time(&self) -> f64 {
@@ -78,9 +86,13 @@ impl Sample for State {
         [self.x, self.v]
     }
 
-    /// The cubic that has displacement and velocity of both ends of a step. The accelerations stay out of it: where the motion
-    /// is stiff they magnify every error of the velocity.
-    fn between((from, [x, v]): (f64, &[f64; 2]), (to, [x1, v1]): (f64, &[f64; 2]), t: f64) -> Option<[f64; 2]> {
+    /// The cubic that has displacement and velocity of both ends of a step. The accelerations stay
+    /// out of it: where the motion is stiff they magnify every error of the velocity.
+    fn between(
+        (from, [x, v]): (f64, &[f64; 2]),
+        (to, [x1, v1]): (f64, &[f64; 2]),
+        t: f64,
+    ) -> Option<[f64; 2]> {
         let length = to - from;
         // In units of the step.
         let (v, v1, rise) = (length * v, length * v1, x1 - x);

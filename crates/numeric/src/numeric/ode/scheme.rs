@@ -34,9 +34,10 @@ pub(super) fn explicit<Y: Values>() -> Scheme<impl OrdinaryNumericalMethod<f64, 
     Scheme { fresh, inside }
 }
 
-/// Radau IIA of order 5 (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd ed., Springer 1996, section
-/// IV.8), which takes long steps where a motion is slow and stiff.
-pub(super) fn implicit<S: Sample>() -> Scheme<impl OrdinaryNumericalMethod<f64, S::Values>, S::Values> {
+/// Radau IIA of order 5 (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd
+/// ed., Springer 1996, section IV.8), which takes long steps where a motion is slow and stiff.
+pub(super) fn implicit<S: Sample>()
+-> Scheme<impl OrdinaryNumericalMethod<f64, S::Values>, S::Values> {
     let fresh = |options: &Options, first_step: f64, longest_step: f64| {
         ImplicitRungeKutta::radau5()
             .rtol(options.relative_tolerance)

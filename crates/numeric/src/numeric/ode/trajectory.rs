@@ -1,8 +1,10 @@
-//! The path of a run: its values at every time between its ends, the events it met, and why it stopped.
+//! The path of a run: its values at every time between its ends, the events it met, and why it
+//! stopped.
 //!
-//! Each accepted step is kept as one polynomial for each value in the fraction s of the step, written `x(s) = x0 + s q(s)`, so
-//! that a motion that starts on a surface leaves it with the right sign however small s is. `q` is a Chebyshev
-//! series through the values of the method's own interpolant.
+//! Each accepted step is kept as one polynomial for each value in the fraction s of the step,
+//! written `x(s) = x0 + s q(s)`, so that a motion that starts on a surface leaves it with the right
+//! sign however small s is. `q` is a Chebyshev series through the values of the method's own
+//! interpolant.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -11,14 +13,17 @@ use std::sync::LazyLock;
 use super::State;
 use super::sample::Sample;
 
-/// Terms of the Chebyshev series of a step: the interpolant has degree 8 in s, its quotient by s has degree 7.
+/// Terms of the Chebyshev series of a step: the interpolant has degree 8 in s, its quotient by s
+/// has degree 7.
 pub(super) const TERMS: usize = 8;
 
 /// The fractions of a step at which its interpolant is read: Chebyshev points, neither 0 nor 1.
-pub(super) static FRACTIONS: LazyLock<[f64; TERMS]> =
-    LazyLock::new(|| std::array::from_fn(|index| 0.5 * (1.0 - (PI * (index as f64 + 0.5) / TERMS as f64).cos())));
+pub(super) static FRACTIONS: LazyLock<[f64; TERMS]> = LazyLock::new(|| {
+    std::array::from_fn(|index| 0.5 * (1.0 - (PI * (index as f64 + 0.5) / TERMS as f64).cos()))
+});
 
-/// The numerical solution of x'' = g(t, x, v), or of any first-order equations, on an interval of time, as a function.
+/// The numerical solution of x'' = g(t, x, v), or of any first-order equations, on an interval of
+/// time, as a function.
 #[derive(Debug, Clone)]
 pub struct Trajectory<S: Sample = State> {
     pub(super) start: S,
@@ -69,7 +74,8 @@ pub enum StopReason {
         /// The last time reached.
         time: f64,
     },
-    /// The steps became too small to advance the clock: a singularity, or a tolerance beyond double precision.
+    /// The steps became too small to advance the clock: a singularity, or a tolerance beyond double
+    /// precision.
     StepTooSmall {
         /// The last time reached.
         time: f64,
@@ -84,9 +90,13 @@ pub enum StopReason {
 impl fmt::Display for StopReason {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Interrupted { time } => write!(formatter, "the run was stopped from outside at t = {time}"),
+            Self::Interrupted { time } => {
+                write!(formatter, "the run was stopped from outside at t = {time}")
+            }
             Self::EndReached => write!(formatter, "the end time was reached"),
-            Self::Event { phase, event } => write!(formatter, "event {event} of phase {phase} stopped the run"),
+            Self::Event { phase, event } => {
+                write!(formatter, "event {event} of phase {phase} stopped the run")
+            }
             Self::NonFinite { time } => write!(
                 formatter,
                 "no finite value after t = {time}: the motion leaves the domain of the equation or escapes to infinity"
@@ -111,15 +121,16 @@ impl fmt::Display for StopReason {
 }
 
 impl Trajectory {
-    /// Displacement and velocity at time `t`; `None` outside the time covered. Where a switch changed the state, the
-    /// value after the switch.
+    /// Displacement and velocity at time `t`; `None` outside the time covered. Where a switch
+    /// changed the state, the value after the switch.
     pub fn at(&self, t: f64) -> Option<(f64, f64)> {
         self.state_at(t).map(|state| (state.x, state.v))
     }
 }
 
 impl<S: Sample> Trajectory<S> {
-    /// The state at time `t`; `None` outside the time covered. Where a switch changed the state, the one after the switch.
+    /// The state at time `t`; `None` outside the time covered. Where a switch changed the state,
+    /// the one after the switch.
     pub fn state_at(&self, t: f64) -> Option<S> {
         if t == self.end.time() {
             return Some(self.end.clone());
@@ -141,8 +152,8 @@ impl<S: Sample> Trajectory<S> {
         self.end.clone()
     }
 
-    /// The states between which the method stepped, first and last included. A switch that changed the state shows
-    /// the state after it.
+    /// The states between which the method stepped, first and last included. A switch that changed
+    /// the state shows the state after it.
     pub fn knots(&self) -> impl Iterator<Item = S> + '_ {
         self.steps
             .iter()
@@ -183,7 +194,10 @@ impl<S: Sample> Trajectory<S> {
 
     /// Whether the end time or a stopping event was reached: false where the run had to give up.
     pub fn is_complete(&self) -> bool {
-        matches!(self.stop_reason, StopReason::EndReached | StopReason::Event { .. })
+        matches!(
+            self.stop_reason,
+            StopReason::EndReached | StopReason::Event { .. }
+        )
     }
 
     /// Number of accepted steps.
@@ -197,7 +211,9 @@ impl<S: Sample> Trajectory<S> {
     }
 
     fn step_index(&self, t: f64) -> Option<usize> {
-        self.steps.partition_point(|step| step.start.time() <= t).checked_sub(1)
+        self.steps
+            .partition_point(|step| step.start.time() <= t)
+            .checked_sub(1)
     }
 }
 
@@ -218,8 +234,9 @@ impl<S: Sample> Step<S> {
         let origin = start.values();
         let mut quotient = values;
         for (component, origin) in origin.as_ref().iter().enumerate() {
-            let samples: [f64; TERMS] =
-                std::array::from_fn(|index| (quotient[index].as_ref()[component] - origin) / FRACTIONS[index]);
+            let samples: [f64; TERMS] = std::array::from_fn(|index| {
+                (quotient[index].as_ref()[component] - origin) / FRACTIONS[index]
+            });
             for (term, coefficient) in quotient.iter_mut().zip(chebyshev_coefficients(&samples)) {
                 term.as_mut()[component] = coefficient;
             }
@@ -243,16 +260,22 @@ impl<S: Sample> Step<S> {
 
     /// The state at the fraction s of the step.
     pub(super) fn state_at(&self, fraction: f64) -> S {
-        S::new(self.start.time() + fraction * self.length, &self.at(fraction))
+        S::new(
+            self.start.time() + fraction * self.length,
+            &self.at(fraction),
+        )
     }
 }
 
-/// Row k: `(2 - [k = 0])/n cos(k angle_j)`, the discrete cosine transform at the points of [`FRACTIONS`].
+/// Row k: `(2 - [k = 0])/n cos(k angle_j)`, the discrete cosine transform at the points of
+/// [`FRACTIONS`].
 static TRANSFORM: LazyLock<[[f64; TERMS]; TERMS]> = LazyLock::new(|| {
     std::array::from_fn(|k| {
         let weight = if k == 0 { 1.0 } else { 2.0 } / TERMS as f64;
         // s = (1 - cos angle)/2 is the variable -cos(angle) = cos(pi - angle) on [-1, 1].
-        std::array::from_fn(|j| weight * (k as f64 * PI * (1.0 - (j as f64 + 0.5) / TERMS as f64)).cos())
+        std::array::from_fn(|j| {
+            weight * (k as f64 * PI * (1.0 - (j as f64 + 0.5) / TERMS as f64)).cos()
+        })
     })
 });
 
@@ -283,7 +306,8 @@ mod tests {
 
     #[test]
     fn a_step_reproduces_every_polynomial_it_can_hold() {
-        // x(s) = 0.3 + s P(s), v(s) = -1 + s R(s) with P, R of degree 7, on the step from t = 2 to t = 2.5.
+        // x(s) = 0.3 + s P(s), v(s) = -1 + s R(s) with P, R of degree 7, on the step from t = 2 to
+        // t = 2.5.
         let p = |s: f64| 1.0 - 3.0 * s + 0.5 * s.powi(5) - 2.0 * s.powi(7);
         let r = |s: f64| 4.0 * s.powi(3) - s.powi(6);
         let start = State {

@@ -1,8 +1,9 @@
-//! What of a decay is exact, or nearly so, for a restoring force of any strength: the action under viscous damping, and the energy
-//! from one turning point to the next under dry friction.
+//! What of a decay is exact, or nearly so, for a restoring force of any strength: the action under
+//! viscous damping, and the energy from one turning point to the next under dry friction.
 //!
-//! References: V. I. Arnold, *Mathematical Methods of Classical Mechanics*, 2nd ed., Springer 1989, section 52 (averaging over the
-//! true motion); L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., Pergamon 1976, section 49.
+//! References: V. I. Arnold, *Mathematical Methods of Classical Mechanics*, 2nd ed., Springer 1989,
+//! section 52 (averaging over the true motion); L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed.,
+//! Pergamon 1976, section 49.
 //!
 //! ```text
 //! x'' + 2 zeta x' + f(x) = 0,  V' = f:   J = (1/2 pi) oint x' dx,   dE/dt = -2 zeta x'^2 over a period is dJ/dt = -2 zeta J
@@ -47,7 +48,11 @@ fn drain(oscillator: &Oscillator, parts: &Parts) -> Option<Drain> {
     let mut signs = 0;
     for factor in factors {
         match factor.node() {
-            Node::Function(Function::Sign, arguments) if arguments[0].as_symbol() == Some(velocity) => signs += 1,
+            Node::Function(Function::Sign, arguments)
+                if arguments[0].as_symbol() == Some(velocity) =>
+            {
+                signs += 1
+            }
             _ if free(factor) => size = &size * factor,
             _ => return None,
         }
@@ -58,28 +63,41 @@ fn drain(oscillator: &Oscillator, parts: &Parts) -> Option<Drain> {
 /// What holds beside the slow equations, where the restoring force is not linear.
 pub(super) fn notes(oscillator: &Oscillator, parts: &Parts) -> Vec<Note> {
     let x = oscillator.coordinate;
-    let linear = Expr::divide(&parts.restoring, &Expr::from(x)).and_then(|quotient| quotient.expand());
+    let linear =
+        Expr::divide(&parts.restoring, &Expr::from(x)).and_then(|quotient| quotient.expand());
     if linear.is_ok_and(|stiffness| !stiffness.contains(x)) {
         return vec![];
     }
     let note = match drain(oscillator, parts) {
         Some(Drain::Viscous(rate)) => {
-            let sine = Expr::from(x).sin().is_ok_and(|sine| sine == parts.restoring);
-            Some(Note::Action { rate, pendulum: sine })
+            let sine = Expr::from(x)
+                .sin()
+                .is_ok_and(|sine| sine == parts.restoring);
+            Some(Note::Action {
+                rate,
+                pendulum: sine,
+            })
         }
         Some(Drain::Dry(size)) if is_odd(&parts.restoring, x).unwrap_or(false) => {
-            let at = |name: &str| potential(&parts.restoring, x)?.substitute(x, &Expr::symbol(name)).ok();
-            at("a_n").zip(at("a_m")).map(|(before, after)| Note::HalfSwings {
-                lost: &before - &after,
-                size,
-            })
+            let at = |name: &str| {
+                potential(&parts.restoring, x)?
+                    .substitute(x, &Expr::symbol(name))
+                    .ok()
+            };
+            at("a_n")
+                .zip(at("a_m"))
+                .map(|(before, after)| Note::HalfSwings {
+                    lost: &before - &after,
+                    size,
+                })
         }
         _ => None,
     };
     note.into_iter().collect()
 }
 
-/// When the amplitude is a part of that at the start, by the action; `None` where damping is not viscous alone.
+/// When the amplitude is a part of that at the start, by the action; `None` where damping is not
+/// viscous alone.
 pub fn falls_to(
     oscillator: &Oscillator,
     equilibrium: &Expr,
@@ -91,12 +109,19 @@ pub fn falls_to(
         return None;
     };
     let rate = rate.evaluate(numbers).ok().filter(|rate| *rate > 0.0)?;
-    let force = Force::new(&parts.restoring, oscillator.coordinate, equilibrium, numbers, start)?;
+    let force = Force::new(
+        &parts.restoring,
+        oscillator.coordinate,
+        equilibrium,
+        numbers,
+        start,
+    )?;
     let ratio = action(&force, start)? / action(&force, end)?;
     Some(ratio.ln() / rate).filter(|time| time.is_finite())
 }
 
-/// The action of the motion released at a distance, up to a factor: `int sqrt(V(a) - V(x)) dx` between its turning points.
+/// The action of the motion released at a distance, up to a factor: `int sqrt(V(a) - V(x)) dx`
+/// between its turning points.
 fn action(force: &Force, start: f64) -> Option<f64> {
     /// With `x = m + h sin(phi)` the integrand is smooth and periodic.
     const POINTS: usize = 64;

@@ -1,9 +1,9 @@
-//! Averaging of driven motions: to first order for every force whose projections have a closed form, to second order, and at
-//! superharmonic and subharmonic resonances, for polynomials.
+//! Averaging of driven motions: to first order for every force whose projections have a closed
+//! form, to second order, and at superharmonic and subharmonic resonances, for polynomials.
 //!
-//! References: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 4.1.1 and 5.7; J. P. Den Hartog, *Forced
-//! vibrations with combined Coulomb and viscous friction*, Trans. ASME 53 (1931) 107-115, for the least force that moves a mass held
-//! by dry friction.
+//! References: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 4.1.1
+//! and 5.7; J. P. Den Hartog, *Forced vibrations with combined Coulomb and viscous friction*, Trans.
+//! ASME 53 (1931) 107-115, for the least force that moves a mass held by dry friction.
 //!
 //! ```text
 //! x = a cos(theta), x' = -a omega0 sin(theta), theta = (Omega t - psi)/p,   Omega = p omega0 + sigma,   all else small
@@ -11,10 +11,11 @@
 //! F cos(Omega t) near 1:1      a' gains F sin(psi)/(2 omega0), psi' gains F cos(psi)/(2 omega0 a)
 //! ```
 //!
-//! A drive reaches the motion where its wave has a first harmonic beside the powers of `x` and `x'` that stand before it. Elsewhere,
-//! and to second order, the amplitude of the first harmonic and its phase are expanded as those of multiple scales are: with that
-//! amplitude both methods have the same series, here with the motion to one order less than the rates. What an order says nothing about,
-//! such as the parametric resonance 1:1, is left to the next one.
+//! A drive reaches the motion where its wave has a first harmonic beside the powers of `x` and `x'`
+//! that stand before it. Elsewhere, and to second order, the amplitude of the first harmonic and
+//! its phase are expanded as those of multiple scales are: with that amplitude both methods have
+//! the same series, here with the motion to one order less than the rates. What an order says
+//! nothing about, such as the parametric resonance 1:1, is left to the next one.
 
 use num_traits::{One as _, ToPrimitive as _, Zero as _};
 
@@ -41,13 +42,19 @@ const HIGHEST_POWER: u32 = 24;
 /// The slow equations of a driven motion and its steady amplitudes.
 ///
 /// # Errors
-/// A drive that is no single wave, a resonance that the equation does not have, a term without a closed projection, or to second order
-/// one that is no polynomial.
-pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Solution, Refusal> {
+/// A drive that is no single wave, a resonance that the equation does not have, a term without a
+/// closed projection, or to second order one that is no polynomial.
+pub(super) fn solve(
+    oscillator: &Oscillator,
+    parts: &Parts,
+    options: &Options,
+) -> Result<Solution, Refusal> {
     let refuse = |reason: Unsuited| Err(reason.to(Method::Averaging));
     match options.order {
         Some(0) => return refuse(Unsuited::LowestOrder { lowest: 1 }),
-        Some(order) if order > HIGHEST => return refuse(Unsuited::HighestOrder { highest: HIGHEST }),
+        Some(order) if order > HIGHEST => {
+            return refuse(Unsuited::HighestOrder { highest: HIGHEST });
+        }
         _ => {}
     }
     if options.amplitude == Some(AmplitudeConvention::Initial) {
@@ -74,7 +81,8 @@ pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -
     if !projected.as_ref().is_err_and(is_of_resonance) {
         return projected;
     }
-    // What the projections do not reach, an expansion of a polynomial may, of second order too where none is asked for.
+    // What the projections do not reach, an expansion of a polynomial may, of second order too
+    // where none is asked for.
     for order in 1..=options.order.unwrap_or(HIGHEST) {
         let Ok(scaling) = averaged.scaling(order) else {
             break;
@@ -103,7 +111,11 @@ impl UnderDrive<'_> {
     fn scaling(&self, order: u32) -> Result<Scaling, Refusal> {
         let mut force = match self.small.expand(order) {
             Ok(force) => force,
-            Err(OscillatorError::NotPolynomial(_) | OscillatorError::Taylor(_) | OscillatorError::NoEquilibrium(_)) => {
+            Err(
+                OscillatorError::NotPolynomial(_)
+                | OscillatorError::Taylor(_)
+                | OscillatorError::NoEquilibrium(_),
+            ) => {
                 self.small.linear_part()?;
                 let reason = not_polynomial(&self.small.without_linear()?, self.free.coordinate);
                 return Err(reason.to(Method::Averaging));
@@ -135,19 +147,28 @@ impl UnderDrive<'_> {
         let projected = Projected::of(self.free, &self.small, &Expr::from(a))?;
         let near = match self.asked.resonance {
             Some(_) => None,
-            None => ratio_of(&drive.frequency, &self.small.linear_part()?.linear_in_full()),
+            None => ratio_of(
+                &drive.frequency,
+                &self.small.linear_part()?.linear_in_full(),
+            ),
         };
-        let forces = drive.terms.iter().any(|driven| driven.is_force(oscillator.coordinate));
+        let forces = drive
+            .terms
+            .iter()
+            .any(|driven| driven.is_force(oscillator.coordinate));
         let candidates = match (self.asked.resonance, near) {
             (Some(asked), _) => vec![asked],
             (None, Some(ratio)) => by_distance(drive.resonances(), ratio),
             (None, None) if forces => vec![(1, 1)],
             (None, None) => vec![(2, 1), (1, 1)],
         };
-        // Waves of several frequencies turn with several multiples of the phase, which is for expansions.
+        // Waves of several frequencies turn with several multiples of the phase, which is for
+        // expansions.
         let one_frequency = drive.terms.iter().all(|driven| driven.multiple == 1);
         let waves_at = |(p, q): (u32, u32)| match q {
-            1 if one_frequency && is_ratio((p, q)) => waves(drive, oscillator, &projected.omega0, p).map(Some),
+            1 if one_frequency && is_ratio((p, q)) => {
+                waves(drive, oscillator, &projected.omega0, p).map(Some)
+            }
             _ => Ok(None),
         };
         for resonance in candidates.iter().copied() {
@@ -162,7 +183,8 @@ impl UnderDrive<'_> {
                 let term = driven.term.clone().into();
                 return refuse(Unsuited::ResonanceWithoutDamping { term });
             }
-            return Question::new(oscillator, &self.small, drive, projected, resonance.0).answer(&waves);
+            return Question::new(oscillator, &self.small, drive, projected, resonance.0)
+                .answer(&waves);
         }
         let scaling = self.scaling(1).ok();
         let mut others = vec![];
@@ -181,7 +203,8 @@ impl UnderDrive<'_> {
     }
 }
 
-/// What a drive adds to `2 omega0 a'` and to `2 omega0 a (theta' - omega0)`: the coefficients of cos(psi) and sin(psi).
+/// What a drive adds to `2 omega0 a'` and to `2 omega0 a (theta' - omega0)`: the coefficients of
+/// cos(psi) and sin(psi).
 struct Waves {
     sine: [Expr; 2],
     cosine: [Expr; 2],
@@ -190,7 +213,10 @@ struct Waves {
 impl Waves {
     /// Whether anything reaches the motion.
     fn reach(&self) -> bool {
-        self.sine.iter().chain(&self.cosine).any(|wave| !wave.is_zero())
+        self.sine
+            .iter()
+            .chain(&self.cosine)
+            .any(|wave| !wave.is_zero())
     }
 }
 
@@ -207,12 +233,14 @@ fn waves(drive: &Drive, oscillator: &Oscillator, omega0: &Expr, p: u32) -> Resul
             Unsuited::NoProjection { term }.to(Method::Averaging)
         };
         let (size, powers) = powers(driven, oscillator.coordinate).ok_or_else(no_projection)?;
-        let size =
-            &size * &(a.integer_power((powers[0] + powers[1]).into())? * omega0.integer_power(powers[1].into())?);
+        let size = &size
+            * &(a.integer_power((powers[0] + powers[1]).into())?
+                * omega0.integer_power(powers[1].into())?);
         let along = Series::cos(POLYNOMIALS, 1)
             .power(powers[0])
             .product(&Series::sin(POLYNOMIALS, 1).times(-1).power(powers[1]));
-        // cos(p theta + psi) = cos(p theta) cos(psi) - sin(p theta) sin(psi), and the sine likewise.
+        // cos(p theta + psi) = cos(p theta) cos(psi) - sin(p theta) sin(psi), and the sine
+        // likewise.
         let [in_phase, across] = [
             Series::cos(POLYNOMIALS, p as usize),
             Series::sin(POLYNOMIALS, p as usize),
@@ -229,14 +257,17 @@ fn waves(drive: &Drive, oscillator: &Oscillator, omega0: &Expr, p: u32) -> Resul
         }
     }
     let [sine, cosine] = sums.map(|parts| parts.map(|terms| Expr::sum(terms).expand()));
-    let both = |[cos, sin]: [Result<Expr, ExprError>; 2]| -> Result<[Expr; 2], ExprError> { Ok([cos?, sin?]) };
+    let both = |[cos, sin]: [Result<Expr, ExprError>; 2]| -> Result<[Expr; 2], ExprError> {
+        Ok([cos?, sin?])
+    };
     Ok(Waves {
         sine: both(sine)?,
         cosine: both(cosine)?,
     })
 }
 
-/// What stands before a wave as a constant and whole powers of coordinate and velocity; `None` where it is something else.
+/// What stands before a wave as a constant and whole powers of coordinate and velocity; `None`
+/// where it is something else.
 fn powers(driven: &Driven, coordinate: Symbol) -> Option<(Expr, [u32; 2])> {
     let own = [coordinate, coordinate.derivative()];
     let (number, factors) = driven.factor.factors();
@@ -245,7 +276,9 @@ fn powers(driven: &Driven, coordinate: Symbol) -> Option<(Expr, [u32; 2])> {
         let (base, exponent) = factor.base_and_exponent();
         match own.iter().position(|&name| base.as_symbol() == Some(name)) {
             Some(place) => {
-                let exponent = exponent.as_number().filter(|exponent| exponent.is_integer())?;
+                let exponent = exponent
+                    .as_number()
+                    .filter(|exponent| exponent.is_integer())?;
                 let exponent = exponent.to_integer().to_u32()?;
                 powers[place] += Some(exponent).filter(|exponent| *exponent <= HIGHEST_POWER)?;
             }
@@ -270,7 +303,13 @@ struct Question<'a> {
 }
 
 impl<'a> Question<'a> {
-    fn new(oscillator: &'a Oscillator, small: &'a SmallTerms, drive: &'a Drive, projected: Projected, p: u32) -> Self {
+    fn new(
+        oscillator: &'a Oscillator,
+        small: &'a SmallTerms,
+        drive: &'a Drive,
+        projected: Projected,
+        p: u32,
+    ) -> Self {
         let defined = projected.definitions.iter().chain(&drive.definitions);
         let defined = defined.map(|definition| definition.symbol);
         let taken: Vec<Symbol> = oscillator.names().into_iter().chain(defined).collect();
@@ -304,11 +343,14 @@ impl<'a> Question<'a> {
         let turning = [halves(&waves.sine, 1)?, halves(&waves.cosine, -1)?];
         let angle = Expr::from(self.phase);
         let [cos, sin] = [angle.cos()?, angle.sin()?];
-        let moving = turning.each_ref().map(|[by_cos, by_sin]| by_cos * &cos + by_sin * &sin);
+        let moving = turning
+            .each_ref()
+            .map(|[by_cos, by_sin]| by_cos * &cos + by_sin * &sin);
         let amplitude_rate = &rate + &moving[0];
         let over = Expr::divide(&p, &a)?;
         let each = |sum: &Expr| (sum * &over).expand();
-        let phase_rate = each(&phase)? + each(&(&turning[1][0] * &cos))? + each(&(&turning[1][1] * &sin))?;
+        let phase_rate =
+            each(&phase)? + each(&(&turning[1][0] * &cos))? + each(&(&turning[1][1] * &sin))?;
         let backbone = (&self.projected.omega0 + &Expr::divide(&bend, &a)?).expand()?;
         let response = self.response([&rate, &phase], &turning, &bend)?;
         let derivation = self.derivation([&amplitude_rate, &phase_rate], &response)?;
@@ -367,10 +409,14 @@ impl<'a> Question<'a> {
             plane: None,
         };
         let polynomial = |expression: &Expr| expression.to_polynomial(&mut |_| None).ok().flatten();
-        let polynomials = |parts: &[Expr; 2]| Some([polynomial(&parts[0])?, polynomial(&parts[1])?]);
+        let polynomials =
+            |parts: &[Expr; 2]| Some([polynomial(&parts[0])?, polynomial(&parts[1])?]);
         let whole = || {
             let still = [polynomial(rate)?, polynomial(phase)?];
-            Some((still, [polynomials(&turning[0])?, polynomials(&turning[1])?]))
+            Some((
+                still,
+                [polynomials(&turning[0])?, polynomials(&turning[1])?],
+            ))
         };
         if let Some(([rate, phase], waves)) = whole() {
             let found = FrequencyResponse::of([&rate, &phase], &waves, self.sigma, self.a);
@@ -383,8 +429,8 @@ impl<'a> Question<'a> {
         }
         // Of one wave its size is all that matters.
         let [[rate_cos, rate_sin], [phase_cos, phase_sin]] = turning;
-        let one_wave =
-            phase_sin == rate_cos && *phase_cos == -rate_sin || *phase_sin == -rate_cos && phase_cos == rate_sin;
+        let one_wave = phase_sin == rate_cos && *phase_cos == -rate_sin
+            || *phase_sin == -rate_cos && phase_cos == rate_sin;
         if one_wave {
             let square = |of: &Expr| of * of;
             let drive = square(rate_cos) + square(rate_sin);
@@ -405,18 +451,29 @@ impl<'a> Question<'a> {
         response: &Response,
     ) -> Result<Vec<Line>, ExprError> {
         let letters = Letters::beside(&self.oscillator.names());
-        let mut lines = self.projected.along(self.oscillator, &Expr::from(self.a), &letters)?;
+        let mut lines = self
+            .projected
+            .along(self.oscillator, &Expr::from(self.a), &letters)?;
         let theta = Expr::from(self.oscillator.phase());
         let turned = &(Expr::from(i64::from(self.p)) * theta) + &Expr::from(self.phase);
         lines.push(Line::equation(self.drive.angle(), turned).because("the drive turns with"));
         lines.push(
-            Line::equation(self.a.derivative(), amplitude_rate.clone()).because("what sin(θ) asks for, with the drive"),
+            Line::equation(self.a.derivative(), amplitude_rate.clone())
+                .because("what sin(θ) asks for, with the drive"),
         );
-        lines.push(Line::equation(self.phase.derivative(), phase_rate.clone()).because("what cos(θ) asks for"));
-        let closed = response.closed.as_ref().map(|closed| closed.relation.clone());
+        lines.push(
+            Line::equation(self.phase.derivative(), phase_rate.clone())
+                .because("what cos(θ) asks for"),
+        );
+        let closed = response
+            .closed
+            .as_ref()
+            .map(|closed| closed.relation.clone());
         if let Some(relation) = response.relation.as_ref().map(Expr::from).or(closed) {
             let steady = "steady where both vanish; cos^2 + sin^2 = 1 eliminates the phase";
-            lines.push(Line::equal([Formula::from(Expr::zero()), Formula::from(relation)]).because(steady));
+            lines.push(
+                Line::equal([Formula::from(Expr::zero()), Formula::from(relation)]).because(steady),
+            );
         }
         Ok(lines)
     }
@@ -424,15 +481,12 @@ impl<'a> Question<'a> {
     fn notes(&self) -> Vec<Note> {
         let letters = self.small.letters();
         let written = |driven: &&Driven| !letters.iter().any(|&name| driven.factor.contains(name));
-        let factors = self
-            .drive
-            .terms
-            .iter()
-            .filter(written)
-            .map(|driven| match driven.factor.has_leading_minus() {
+        let factors = self.drive.terms.iter().filter(written).map(|driven| {
+            match driven.factor.has_leading_minus() {
                 true => -&driven.factor,
                 false => driven.factor.clone(),
-            });
+            }
+        });
         let forces = self
             .drive
             .terms
@@ -441,7 +495,9 @@ impl<'a> Question<'a> {
         let driven = Note::Driven {
             resonance: (self.p, 1),
             parametric: !forces,
-            small: std::iter::once(Expr::from(self.sigma)).chain(factors).collect(),
+            small: std::iter::once(Expr::from(self.sigma))
+                .chain(factors)
+                .collect(),
             power: 1,
             nearest: Some((self.p, 1)),
         };
@@ -450,8 +506,15 @@ impl<'a> Question<'a> {
     }
 
     /// The least force that moves what dry friction holds: `S > -P` at the amplitude zero.
-    fn least_force(&self, rate: &Expr, [by_cos, by_sin]: &[Expr; 2]) -> Result<Option<Note>, ExprError> {
-        let Ok(held) = rate.substitute(self.a, &Expr::zero()).and_then(|held| held.expand()) else {
+    fn least_force(
+        &self,
+        rate: &Expr,
+        [by_cos, by_sin]: &[Expr; 2],
+    ) -> Result<Option<Note>, ExprError> {
+        let Ok(held) = rate
+            .substitute(self.a, &Expr::zero())
+            .and_then(|held| held.expand())
+        else {
             return Ok(None);
         };
         if !held.has_leading_minus() || held.terms().len() != 1 {
@@ -462,8 +525,9 @@ impl<'a> Question<'a> {
         let size = squares
             .to_polynomial(&mut |_| None)?
             .and_then(|squares| squares.single_term_root());
-        let free =
-            |size: &Polynomial| !size.symbols().contains(&self.a) && *size != Polynomial::constant(Rational::zero());
+        let free = |size: &Polynomial| {
+            !size.symbols().contains(&self.a) && *size != Polynomial::constant(Rational::zero())
+        };
         Ok(match size.filter(free) {
             Some(size) => Some(Note::LeastForce {
                 force: (&Expr::from(&size) * &twice).expand()?,

@@ -1,7 +1,8 @@
 //! The first harmonic of a term in coordinate and velocity along a harmonic motion, in closed form.
 //!
-//! References: NIST Digital Library of Mathematical Functions 5.12.2 (the Beta integral); N. N. Bogoliubov, Y. A. Mitropolsky,
-//! *Asymptotic Methods in the Theory of Non-Linear Oscillations*, Gordon and Breach 1961, section 1.
+//! References: NIST Digital Library of Mathematical Functions 5.12.2 (the Beta integral); N. N.
+//! Bogoliubov, Y. A. Mitropolsky, *Asymptotic Methods in the Theory of Non-Linear Oscillations*,
+//! Gordon and Breach 1961, section 1.
 //!
 //! ```text
 //! x = a cos(psi), v = -b sin(psi), b = a omega0
@@ -20,8 +21,8 @@
 //! atan(z cos) = 2 sum_m (-1)^m r^(2m+1)/(2m+1) cos((2m+1) .),     r = (sqrt(1 + z^2) - 1)/z
 //! ```
 //!
-//! with `c_k` of [`conservative`](crate::conservative): a force of the velocity is one of the position a quarter of a period
-//! later.
+//! with `c_k` of [`conservative`](crate::conservative): a force of the velocity is one of the
+//! position a quarter of a period later.
 
 use num_integer::Integer as _;
 
@@ -33,7 +34,12 @@ use crate::expr::{Expr, Function, Node};
 use crate::symbol::Symbol;
 
 /// `[S, C]` of a term; `None` where one has no closed form here.
-pub(super) fn of_term(term: &Expr, coordinate: Symbol, amplitude: &Expr, omega0: &Expr) -> Option<[Expr; 2]> {
+pub(super) fn of_term(
+    term: &Expr,
+    coordinate: Symbol,
+    amplitude: &Expr,
+    omega0: &Expr,
+) -> Option<[Expr; 2]> {
     let velocity = coordinate.derivative();
     let speed = amplitude * omega0;
     let (number, factors) = term.factors();
@@ -69,11 +75,19 @@ pub(super) fn of_term(term: &Expr, coordinate: Symbol, amplitude: &Expr, omega0:
         )?,
         (false, false) => return None,
     };
-    Some([(&outside * &sine).expand().ok()?, (&outside * &cosine).expand().ok()?])
+    Some([
+        (&outside * &sine).expand().ok()?,
+        (&outside * &cosine).expand().ok()?,
+    ])
 }
 
 /// Powers of both, by the Beta integral.
-fn of_powers(position: &Power, velocity: &Power, amplitude: &Expr, speed: &Expr) -> Option<[Expr; 2]> {
+fn of_powers(
+    position: &Power,
+    velocity: &Power,
+    amplitude: &Expr,
+    speed: &Expr,
+) -> Option<[Expr; 2]> {
     let zero = || Some([Expr::zero(), Expr::zero()]);
     let (above_position, above_velocity) = match (position.odd, velocity.odd) {
         (false, true) => (1, 2),
@@ -85,7 +99,10 @@ fn of_powers(position: &Power, velocity: &Power, amplitude: &Expr, speed: &Expr)
         (&position.exponent, above_position),
         (&velocity.exponent, above_velocity),
     ] {
-        if exponent.as_number().is_some_and(|number| *number <= ratio(-above, 1)) {
+        if exponent
+            .as_number()
+            .is_some_and(|number| *number <= ratio(-above, 1))
+        {
             return None;
         }
     }
@@ -93,8 +110,11 @@ fn of_powers(position: &Power, velocity: &Power, amplitude: &Expr, speed: &Expr)
     let gamma = |argument: Expr| Expr::function(Function::Gamma, vec![argument]).ok();
     let numerator = gamma(half_of(&position.exponent + &Expr::from(above_position))?)?
         * gamma(half_of(&velocity.exponent + &Expr::from(above_velocity))?)?;
-    let denominator = gamma(half_of(&position.exponent + &velocity.exponent + Expr::from(3))?)?;
-    let sizes = Expr::power(amplitude, &position.exponent).ok()? * power_of_product(speed, &velocity.exponent)?;
+    let denominator = gamma(half_of(
+        &position.exponent + &velocity.exponent + Expr::from(3),
+    )?)?;
+    let sizes = Expr::power(amplitude, &position.exponent).ok()?
+        * power_of_product(speed, &velocity.exponent)?;
     let value = Expr::divide(&(numerator * sizes), &(denominator * Expr::pi())).ok()?;
     let value = (Expr::from(2) * value).expand().ok()?;
     Some(match velocity.odd {
@@ -103,7 +123,8 @@ fn of_powers(position: &Power, velocity: &Power, amplitude: &Expr, speed: &Expr)
     })
 }
 
-/// The power of a product of what is positive, each factor by itself, so that powers of the amplitude stand alone.
+/// The power of a product of what is positive, each factor by itself, so that powers of the
+/// amplitude stand alone.
 fn power_of_product(product: &Expr, exponent: &Expr) -> Option<Expr> {
     let (number, factors) = product.factors();
     let number = Expr::power(&Expr::number(number), exponent).ok()?;
@@ -124,8 +145,13 @@ fn of_velocity_beside_power(
     speed: &Expr,
 ) -> Option<[Expr; 2]> {
     let p = position.whole()?;
-    let (k, halves) = if p.is_even() { (1, p / 2) } else { (0, p / 2 + 1) };
-    let value = projected(function, halves, velocity, speed, k)? * amplitude.integer_power(p as i64).ok()?;
+    let (k, halves) = if p.is_even() {
+        (1, p / 2)
+    } else {
+        (0, p / 2 + 1)
+    };
+    let value = projected(function, halves, velocity, speed, k)?
+        * amplitude.integer_power(p as i64).ok()?;
     Some(match k {
         1 => [-value, Expr::zero()],
         _ => [Expr::zero(), value],
@@ -141,8 +167,13 @@ fn of_position_beside_power(
     speed: &Expr,
 ) -> Option<[Expr; 2]> {
     let q = velocity.whole()?;
-    let (k, halves) = if q.is_even() { (1, q / 2) } else { (0, q / 2 + 1) };
-    let value = projected(function, halves, coordinate, amplitude, k)? * speed.integer_power(q as i64).ok()?;
+    let (k, halves) = if q.is_even() {
+        (1, q / 2)
+    } else {
+        (0, q / 2 + 1)
+    };
+    let value = projected(function, halves, coordinate, amplitude, k)?
+        * speed.integer_power(q as i64).ok()?;
     Some(match k {
         1 => [Expr::zero(), value],
         _ => [-value, Expr::zero()],
@@ -150,7 +181,13 @@ fn of_position_beside_power(
 }
 
 /// `c_k` of `function * (1 - (y/size)^2)^halves` along `size * cos`.
-fn projected(function: &Expr, halves: usize, variable: Symbol, size: &Expr, k: usize) -> Option<Expr> {
+fn projected(
+    function: &Expr,
+    halves: usize,
+    variable: Symbol,
+    size: &Expr,
+    k: usize,
+) -> Option<Expr> {
     let mut binomial = Rational::from_integer(1.into());
     let mut sum = Vec::new();
     for j in 0..=halves {
@@ -158,7 +195,11 @@ fn projected(function: &Expr, halves: usize, variable: Symbol, size: &Expr, k: u
         let product = function * &power;
         let coefficient = cosine_coefficient(&product, variable, size, k)
             .or_else(|| arctangent_coefficient(&product, variable, size, k))?;
-        let scale = Expr::divide(&Expr::number(binomial.clone()), &size.integer_power(2 * j as i64).ok()?).ok()?;
+        let scale = Expr::divide(
+            &Expr::number(binomial.clone()),
+            &size.integer_power(2 * j as i64).ok()?,
+        )
+        .ok()?;
         sum.push(&scale * &coefficient);
         let [next, below] = [halves - j, j + 1].map(|n| Rational::from_integer(n.into()));
         binomial = -(binomial * next / below);
@@ -175,7 +216,9 @@ fn arctangent_coefficient(product: &Expr, variable: Symbol, size: &Expr, k: usiz
     let (mut outside, mut power, mut slope) = (Expr::number(number), Power::one(), None);
     for factor in factors {
         match factor.node() {
-            Node::Function(Function::Atan, arguments) if slope.is_none() && factor.contains(variable) => {
+            Node::Function(Function::Atan, arguments)
+                if slope.is_none() && factor.contains(variable) =>
+            {
                 let (found, constant) = linear_in(&arguments[0], variable)?;
                 slope = constant.is_zero().then_some(found);
                 slope.as_ref()?;

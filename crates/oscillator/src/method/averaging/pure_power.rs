@@ -1,10 +1,12 @@
-//! Averaging along the true motion of a restoring force that is one power of the coordinate: nothing linear restores, and the motion
-//! without damping is no wave, but of one shape at every amplitude.
+//! Averaging along the true motion of a restoring force that is one power of the coordinate:
+//! nothing linear restores, and the motion without damping is no wave, but of one shape at every
+//! amplitude.
 //!
-//! References: N. N. Bogoliubov, Y. A. Mitropolsky, *Asymptotic Methods in the Theory of Non-Linear Oscillations*, Gordon and Breach
-//! 1961, section 25 (slow change of the energy); V. I. Arnold, *Mathematical Methods of Classical Mechanics*, 2nd ed., Springer 1989,
-//! section 52; L. Cveticanin, *Strongly Nonlinear Oscillators*, Springer 2014, chapter 4; NIST Digital Library of Mathematical
-//! Functions 5.12.1 (the Beta integral).
+//! References: N. N. Bogoliubov, Y. A. Mitropolsky, *Asymptotic Methods in the Theory of Non-Linear
+//! Oscillations*, Gordon and Breach 1961, section 25 (slow change of the energy); V. I.
+//! Arnold, *Mathematical Methods of Classical Mechanics*, 2nd ed., Springer 1989, section 52; L.
+//! Cveticanin, *Strongly Nonlinear Oscillators*, Springer 2014, chapter 4; NIST Digital Library of
+//! Mathematical Functions 5.12.1 (the Beta integral).
 //!
 //! ```text
 //! x'' + k sgn(x) |x|^n + d(x, x') = 0,   x = r chi(theta),   x'^2 = (2 k/(n+1)) (r^(n+1) - |x|^(n+1)) between two turns
@@ -14,8 +16,9 @@
 //! d = c x':                     r' = -2 c r/(n+3), that is the action r^((n+3)/2) decays as exp(-c t)
 //! ```
 //!
-//! A damping that is odd in the coordinate does no work over a period. With `chi_1` the first harmonic of the motion that turns at one,
-//! `a = chi_1 r` is the amplitude of the first harmonic; the harmonics beside it are numbers, known by quadrature.
+//! A damping that is odd in the coordinate does no work over a period. With `chi_1` the first
+//! harmonic of the motion that turns at one, `a = chi_1 r` is the amplitude of the first harmonic;
+//! the harmonics beside it are numbers, known by quadrature.
 
 use std::collections::BTreeMap;
 
@@ -37,7 +40,9 @@ use crate::oscillator::{Oscillator, Parts};
 use crate::series::FourierSeries;
 use crate::solution::modulation::Release;
 use crate::solution::note::Cut;
-use crate::solution::{AmplitudeConvention, ClosedForm, Definition, Law, Method, Modulation, Note, Solution};
+use crate::solution::{
+    AmplitudeConvention, ClosedForm, Definition, Law, Method, Modulation, Note, Solution,
+};
 use crate::symbol::{Symbol, fresh};
 
 /// A restoring force `k sgn(x) |x|^n`.
@@ -49,16 +54,23 @@ pub(super) struct PurePower {
 }
 
 impl PurePower {
-    /// The restoring force of a damped motion, where it is one power, a number above -1 other than one; `None` for any other.
+    /// The restoring force of a damped motion, where it is one power, a number above -1 other than
+    /// one; `None` for any other.
     pub(super) fn of(parts: &Parts, coordinate: Symbol) -> Option<Self> {
         if parts.damping.is_zero() || !parts.inertia.is_zero() || !parts.forcing.is_zero() {
             return None;
         }
-        let (stiffness, power) =
-            taken_apart(&parts.restoring, [coordinate]).map(|(outside, [power])| (outside, power))?;
+        let (stiffness, power) = taken_apart(&parts.restoring, [coordinate])
+            .map(|(outside, [power])| (outside, power))?;
         let exponent = power.exponent.as_number()?.clone();
-        let restores = power.odd && exponent > ratio(-1, 1) && !exponent.is_one() && !stiffness.has_leading_minus();
-        restores.then_some(Self { stiffness, exponent })
+        let restores = power.odd
+            && exponent > ratio(-1, 1)
+            && !exponent.is_one()
+            && !stiffness.has_leading_minus();
+        restores.then_some(Self {
+            stiffness,
+            exponent,
+        })
     }
 
     /// `1/(n+1)`.
@@ -66,11 +78,15 @@ impl PurePower {
         (&self.exponent + Rational::one()).recip()
     }
 
-    /// What a damping term does to `r'`: the power of `r`, and what stands before it; `None` where the mean has no closed form.
+    /// What a damping term does to `r'`: the power of `r`, and what stands before it; `None` where
+    /// the mean has no closed form.
     fn drain(&self, term: &Expr, coordinate: Symbol) -> Option<(Rational, Expr)> {
         let own = [coordinate, coordinate.derivative()];
         let (outside, [position, velocity]) = taken_apart(term, own)?;
-        let [p, q] = [position.exponent.as_number()?, velocity.exponent.as_number()?];
+        let [p, q] = [
+            position.exponent.as_number()?,
+            velocity.exponent.as_number()?,
+        ];
         if !velocity.odd || p.is_negative() || q.is_negative() {
             return None;
         }
@@ -83,8 +99,13 @@ impl PurePower {
         let power = p + &work / &share - &self.exponent;
         let [first, second] = [(p + &one) * &share, q * &half + &one];
         let both = &first + &second;
-        let betas = gamma_quotient(&[first, second, &share + &half], &[both, share.clone(), half])?;
-        let doubled = (&self.stiffness * &Expr::number(two * &share)).expand().ok()?;
+        let betas = gamma_quotient(
+            &[first, second, &share + &half],
+            &[both, share.clone(), half],
+        )?;
+        let doubled = (&self.stiffness * &Expr::number(two * &share))
+            .expand()
+            .ok()?;
         let speed = Expr::power(&doubled, &Expr::number(work)).ok()?;
         let size = Expr::divide(&(&outside * &speed), &self.stiffness).ok()?;
         Some((power, -(&size * &betas)))
@@ -110,7 +131,8 @@ fn taken_apart<const N: usize>(term: &Expr, variables: [Symbol; N]) -> Option<(E
     Some((outside, powers))
 }
 
-/// A quotient of products of Gamma functions of positive fractions, by `Gamma(z + 1) = z Gamma(z)` and `Gamma(1/2) = sqrt(pi)`.
+/// A quotient of products of Gamma functions of positive fractions, by `Gamma(z + 1) = z Gamma(z)`
+/// and `Gamma(1/2) = sqrt(pi)`.
 fn gamma_quotient(above: &[Rational], below: &[Rational]) -> Option<Expr> {
     let mut factor = Rational::one();
     let mut left: BTreeMap<Rational, i64> = BTreeMap::new();
@@ -122,7 +144,11 @@ fn gamma_quotient(above: &[Rational], below: &[Rational]) -> Option<Expr> {
             }
             while rest > Rational::one() {
                 rest -= Rational::one();
-                factor = if sign > 0 { factor * &rest } else { factor / &rest };
+                factor = if sign > 0 {
+                    factor * &rest
+                } else {
+                    factor / &rest
+                };
             }
             *left.entry(rest).or_insert(0) += sign;
         }
@@ -156,7 +182,13 @@ impl Shape {
             .ok()?
             .expand()
             .ok()?;
-        let force = Force::new(&unit, oscillator.coordinate, &Expr::zero(), &BTreeMap::new(), 1.0)?;
+        let force = Force::new(
+            &unit,
+            oscillator.coordinate,
+            &Expr::zero(),
+            &BTreeMap::new(),
+            1.0,
+        )?;
         let (_, cosine) = motion_about(&force, 1.0).ok()?;
         let first = *cosine.get(1)?;
         let over = |(k, value): (usize, &f64)| match k % 2 == 1 && (value / first).abs() >= LEAST {
@@ -171,7 +203,10 @@ impl Shape {
 
     /// The last harmonic that is written.
     fn last_harmonic(&self) -> usize {
-        self.harmonics.iter().rposition(|value| !value.is_zero()).unwrap_or(1)
+        self.harmonics
+            .iter()
+            .rposition(|value| !value.is_zero())
+            .unwrap_or(1)
     }
 
     /// The motion whose first harmonic has this amplitude.
@@ -223,7 +258,12 @@ struct SlowEquations {
 impl SlowEquations {
     /// # Errors
     /// A damping term without a closed mean.
-    fn of(oscillator: &Oscillator, parts: &Parts, restoring: &PurePower, names: &Names) -> Result<Self, Refusal> {
+    fn of(
+        oscillator: &Oscillator,
+        parts: &Parts,
+        restoring: &PurePower,
+        names: &Names,
+    ) -> Result<Self, Refusal> {
         let Names {
             amplitude,
             phase,
@@ -237,12 +277,17 @@ impl SlowEquations {
                 let term = term.clone().into();
                 return Err(Unsuited::NoProjection { term }.to(Method::Averaging));
             };
-            let at = |base: Symbol, power: Rational| Expr::power(&Expr::from(base), &Expr::number(power));
+            let at = |base: Symbol, power: Rational| {
+                Expr::power(&Expr::from(base), &Expr::number(power))
+            };
             turning_rates.push(&size * &at(turning, power.clone())?);
             rates.push(size * at(amplitude, power.clone())? * at(first, Rational::one() - power)?);
         }
         let amplitude_rate = Expr::sum(rates).expand()?;
-        let frequency = of_power(&restoring.stiffness, &Expr::number(restoring.exponent.clone()))?;
+        let frequency = of_power(
+            &restoring.stiffness,
+            &Expr::number(restoring.exponent.clone()),
+        )?;
         let turn = |size: &Expr| frequency.substitute(AmplitudeConvention::Initial.symbol(), size);
         let phase_rate = turn(&Expr::divide(&Expr::from(amplitude), &Expr::from(first))?)?;
         let phase_rate = spread(&phase_rate)?;
@@ -251,7 +296,8 @@ impl SlowEquations {
                 .because("the mean of the work that damping takes, over k*r^n"),
             Line::equation(phase.derivative(), turn(&Expr::from(turning))?)
                 .because("the exact frequency of the motion that turns at r"),
-            Line::equation(amplitude, Expr::from(first) * Expr::from(turning)).because("its first harmonic"),
+            Line::equation(amplitude, Expr::from(first) * Expr::from(turning))
+                .because("its first harmonic"),
             Line::equation(amplitude.derivative(), amplitude_rate.clone()),
             Line::equation(phase.derivative(), phase_rate.clone()),
         ];
@@ -276,7 +322,8 @@ impl SlowEquations {
         };
         let used: Vec<Symbol> = names.taken.iter().copied().chain([names.first]).collect();
         let rates = [&self.amplitude_rate, &self.phase_rate];
-        let (named, transient) = transient::from_release(names.amplitude, rates, &mut release, &used);
+        let (named, transient) =
+            transient::from_release(names.amplitude, rates, &mut release, &used);
         let modulation = Modulation {
             amplitude: names.amplitude,
             phase: names.phase,
@@ -360,15 +407,21 @@ fn refuse_other_orders(parts: &Parts, options: &Options) -> Result<(), Refusal> 
     Err(reason.to(Method::Averaging))
 }
 
-/// Powers of quotients as products of powers, so that the amplitude stands alone; what has no letters stays together.
+/// Powers of quotients as products of powers, so that the amplitude stands alone; what has no
+/// letters stays together.
 fn spread(expression: &Expr) -> Result<Expr, ExprError> {
     let (number, factors) = expression.factors();
     let mut product = Expr::number(number);
     for factor in factors {
         let (base, exponent) = factor.base_and_exponent();
         let (number, inner) = base.factors();
-        let (constant, inner): (Vec<&Expr>, Vec<&Expr>) = inner.iter().partition(|part| part.symbols().is_empty());
-        let constant = Expr::product([Expr::number(number)].into_iter().chain(constant.into_iter().cloned()));
+        let (constant, inner): (Vec<&Expr>, Vec<&Expr>) =
+            inner.iter().partition(|part| part.symbols().is_empty());
+        let constant = Expr::product(
+            [Expr::number(number)]
+                .into_iter()
+                .chain(constant.into_iter().cloned()),
+        );
         product = product * Expr::power(&constant, &exponent)?;
         for part in inner {
             let (base, power) = part.base_and_exponent();
@@ -379,15 +432,26 @@ fn spread(expression: &Expr) -> Result<Expr, ExprError> {
 }
 
 /// What is small: letters that are factors of the damping alone, or else all of it.
-fn small_in_words(oscillator: &Oscillator, parts: &Parts) -> Result<(Symbol, Vec<Symbol>, Note), ExprError> {
+fn small_in_words(
+    oscillator: &Oscillator,
+    parts: &Parts,
+) -> Result<(Symbol, Vec<Symbol>, Note), ExprError> {
     let restoring: Vec<&Expr> = parts.restoring.terms().iter().collect();
     let damping: Vec<&Expr> = parts.damping.terms().iter().collect();
     let found = letters(&restoring, &damping, &oscillator.parameters, None).unwrap_or_default();
     let marks = found.is_empty().then(Expr::one);
     let mut names = found.into_iter();
-    let first = names.next().unwrap_or_else(|| fresh("delta", &oscillator.names()));
+    let first = names
+        .next()
+        .unwrap_or_else(|| fresh("delta", &oscillator.names()));
     let others: Vec<Symbol> = names.collect();
-    let small = std::iter::once(first).chain(others.iter().copied()).collect();
-    let cut = Note::Cut(Cut::Truncated { small, order: 1, marks });
+    let small = std::iter::once(first)
+        .chain(others.iter().copied())
+        .collect();
+    let cut = Note::Cut(Cut::Truncated {
+        small,
+        order: 1,
+        marks,
+    });
     Ok((first, others, cut))
 }

@@ -5,8 +5,9 @@
 //! x'' + 2 zeta x' + sin(x) = 0            x'' + x + delta (2 zeta x' + sin(x) - x) = 0; delta = 1
 //! ```
 //!
-//! Letters are small where their vanishing leaves the linear restoring force alone; each must be a factor of the terms that it
-//! makes small. Where no letters do that, all other terms are small together.
+//! Letters are small where their vanishing leaves the linear restoring force alone; each must be a
+//! factor of the terms that it makes small. Where no letters do that, all other terms are small
+//! together.
 
 use std::collections::BTreeMap;
 
@@ -57,8 +58,10 @@ impl SmallTerms {
             series.get(1).cloned()
         });
         let slopes: Vec<Expr> = slopes.collect();
-        // Where a function alone restores, as in k*sin(x), the letter before it is not small: its vanishing leaves nothing.
-        let function_restores = linear.is_empty() && !Expr::sum(slopes.iter().cloned()).expand()?.is_zero();
+        // Where a function alone restores, as in k*sin(x), the letter before it is not small: its
+        // vanishing leaves nothing.
+        let function_restores =
+            linear.is_empty() && !Expr::sum(slopes.iter().cloned()).expand()?.is_zero();
         let found = match asked {
             Some(SmallParameter::Amplitude) => Err(None),
             _ if function_restores => {
@@ -117,7 +120,8 @@ impl SmallTerms {
     /// # Errors
     /// It is none, or nothing restores.
     pub(super) fn expand(&self, order: u32) -> Result<PerturbedForce, OscillatorError> {
-        self.marked.expand(SmallParameter::Parameter(self.delta), order)
+        self.marked
+            .expand(SmallParameter::Parameter(self.delta), order)
     }
 
     /// The linear restoring force alone.
@@ -154,12 +158,19 @@ impl SmallTerms {
 /// What stands before the coordinate, where that is all there is of it in a term.
 fn coefficient_of_linear(term: &Expr, oscillator: &Oscillator) -> Option<Expr> {
     let quotient = Expr::divide(term, &Expr::from(oscillator.coordinate)).ok()?;
-    let own = [oscillator.coordinate, oscillator.velocity(), Symbol::new("t")];
-    own.iter().all(|&name| !quotient.contains(name)).then_some(quotient)
+    let own = [
+        oscillator.coordinate,
+        oscillator.velocity(),
+        Symbol::new("t"),
+    ];
+    own.iter()
+        .all(|&name| !quotient.contains(name))
+        .then_some(quotient)
 }
 
-/// Letters that are factors of all small terms and of no linear one, `first` among them: always the one next that takes most of
-/// what is left, of equally good ones a Greek one, the first in the alphabet. The error is a term that none takes.
+/// Letters that are factors of all small terms and of no linear one, `first` among them: always the
+/// one next that takes most of what is left, of equally good ones a Greek one, the first in the
+/// alphabet. The error is a term that none takes.
 pub(super) fn letters(
     linear: &[&Expr],
     others: &[&Expr],
@@ -186,7 +197,8 @@ pub(super) fn letters(
         let free = parameters.iter().copied();
         let candidates = free.filter(|&name| !linear.iter().any(|term| term.contains(name)));
         let taken = |name: Symbol| left.iter().filter(|term| has(term, name)).count();
-        let best = candidates.max_by_key(|&name| (taken(name), name.is_greek(), std::cmp::Reverse(name)));
+        let best =
+            candidates.max_by_key(|&name| (taken(name), name.is_greek(), std::cmp::Reverse(name)));
         let Some(best) = best.filter(|&name| taken(name) > 0) else {
             return Err(term.clone());
         };

@@ -6,7 +6,9 @@ use crate::exact::Polynomials;
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
-use crate::solution::{AmplitudeConvention, Definition, Law, LimitCycle, Method, Modulation, Note, Solution};
+use crate::solution::{
+    AmplitudeConvention, Definition, Law, LimitCycle, Method, Modulation, Note, Solution,
+};
 
 /// What differs between a free motion and one on a limit cycle.
 pub(super) struct Found {

@@ -18,13 +18,22 @@ use crate::symbol::{Symbol, fresh_stem};
 
 /// What an order adds to the motion, in `theta`, with `B = a/2`.
 pub(super) fn motion_of(wave: &Wave, order: usize, names: &Names) -> FourierSeries<Polynomials> {
-    let length = wave.keys().copied().max().map_or(0, |m| m.max(0) as usize + 1);
-    let (mut cosine, mut sine) = (vec![Polynomial::zero(); length], vec![Polynomial::zero(); length]);
+    let length = wave
+        .keys()
+        .copied()
+        .max()
+        .map_or(0, |m| m.max(0) as usize + 1);
+    let (mut cosine, mut sine) = (
+        vec![Polynomial::zero(); length],
+        vec![Polynomial::zero(); length],
+    );
     for (m, value) in wave.iter().filter(|entry| *entry.0 >= 0) {
         let m = *m as usize;
         let part = |part: &Polynomial, factor: i64| {
             let factor = if m == 0 { factor / 2 } else { factor };
-            let scaled = names.polar(part).product(&Polynomial::constant(ratio(factor, 1)));
+            let scaled = names
+                .polar(part)
+                .product(&Polynomial::constant(ratio(factor, 1)));
             scaled.times_monomial(&names.mark(order))
         };
         cosine[m] = part(&value.real, 2);
@@ -45,7 +54,8 @@ pub(super) fn derivation(
     let (own, conjugate, a) = (names.complex.own, names.complex.conjugate, names.amplitude);
     let i = Expr::from(names.unit);
     let [orders, times] = &names.orders;
-    let complex = |value: &Complex| &Expr::from(&value.real) + &(&i * &Expr::from(&value.imaginary));
+    let complex =
+        |value: &Complex| &Expr::from(&value.real) + &(&i * &Expr::from(&value.imaginary));
     let small = match scaling.marker {
         Some(marker) => marker.to_string(),
         None => a.to_string(),
@@ -53,7 +63,8 @@ pub(super) fn derivation(
     let wave = format!("exp({i}*θ)");
     let turns = match response {
         None => format!("θ turns at the rate {}", Expr::from(linear_frequency)),
-        Some(_) => "θ turns in step with the drive; what that forces far from resonance is added".to_owned(),
+        Some(_) => "θ turns in step with the drive; what that forces far from resonance is added"
+            .to_owned(),
     };
     let mut lines = vec![
         Line::words(format!(
@@ -108,7 +119,8 @@ fn elimination(response: &Response) -> Option<Line> {
     Some(Line::equal([Formula::from(Expr::zero()), relation]).because(steady))
 }
 
-/// The same expansion in the words of averaging: what each order adds to the rates and to the motion.
+/// The same expansion in the words of averaging: what each order adds to the rates and to the
+/// motion.
 pub(super) fn averaged_lines(
     question: &Question,
     expansion: &Expansion,
@@ -116,22 +128,30 @@ pub(super) fn averaged_lines(
     response: &Response,
 ) -> Result<Vec<Line>, Refusal> {
     let names = &question.names;
-    let [correction, rate, turn] = ["u", "A", "B"].map(|letter| fresh_stem(letter, &question.taken));
+    let [correction, rate, turn] =
+        ["u", "A", "B"].map(|letter| fresh_stem(letter, &question.taken));
     let numbered = |stem: &str, order: usize| Symbol::new(&format!("{stem}{order}"));
     let leading = motion(question, expansion, |k| k == 0)?;
     let mut lines = vec![Line::equation(question.oscillator.coordinate, leading).because("along")];
     for k in 1..=question.scaling.order as usize {
-        let [own_rate, own_turn] = Slow::of_orders(expansion, question, |order| order == k).rates(question)?;
+        let [own_rate, own_turn] =
+            Slow::of_orders(expansion, question, |order| order == k).rates(question)?;
         lines.push(
-            Line::equation(numbered(&rate, k), own_rate).because(format!("no resonant wave is left at order {k}")),
+            Line::equation(numbered(&rate, k), own_rate)
+                .because(format!("no resonant wave is left at order {k}")),
         );
         lines.push(Line::equation(numbered(&turn, k), own_turn));
         if k < question.scaling.order as usize {
             let rest = motion(question, expansion, |order| order == k)?;
-            lines.push(Line::equation(numbered(&correction, k), rest).because("what that leaves over"));
+            lines.push(
+                Line::equation(numbered(&correction, k), rest).because("what that leaves over"),
+            );
         }
     }
-    lines.push(Line::equation(names.amplitude.derivative(), amplitude_rate.clone()).because("both together"));
+    lines.push(
+        Line::equation(names.amplitude.derivative(), amplitude_rate.clone())
+            .because("both together"),
+    );
     lines.push(Line::equation(names.phase.derivative(), phase_rate.clone()));
     lines.extend(elimination(response));
     Ok(lines)

@@ -1,7 +1,9 @@
-//! Driven motions: near a resonance the phase between drive and motion changes as slowly as the amplitude.
+//! Driven motions: near a resonance the phase between drive and motion changes as slowly as the
+//! amplitude.
 //!
-//! Reference: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 4.1 (primary, superharmonic and
-//! subharmonic resonances of a cubic force), 4.2 (of a quadratic one) and 5.7 (parametric excitation).
+//! Reference: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 4.1
+//! (primary, superharmonic and subharmonic resonances of a cubic force), 4.2 (of a quadratic one)
+//! and 5.7 (parametric excitation).
 //!
 //! ```text
 //! x'' + omega0^2 x + eps f(x, x') = (terms with one wave cos(Omega t) or sin(Omega t)),   q Omega = p omega0 + sigma
@@ -12,8 +14,9 @@
 //! a' = P + P_c cos(psi) + P_s sin(psi),   a psi'/p = Q + Q_c cos(psi) + Q_s sin(psi)
 //! ```
 //!
-//! Where the motion is steady both vanish; the phase is eliminated by `cos^2 + sin^2 = 1`, which leaves the frequency-response
-//! equation. To first order it is `P^2 + Q^2 = S^2`, with `S` what the drive does.
+//! Where the motion is steady both vanish; the phase is eliminated by `cos^2 + sin^2 = 1`, which
+//! leaves the frequency-response equation. To first order it is `P^2 + Q^2 = S^2`, with `S` what
+//! the drive does.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -41,8 +44,13 @@ const HIGHEST: u32 = 3;
 /// The slow equations of a driven motion, its frequency-response equation and what follows from it.
 ///
 /// # Errors
-/// A drive that is no single wave, a resonance that the equation does not have, or what stops an expansion.
-pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Solution, Refusal> {
+/// A drive that is no single wave, a resonance that the equation does not have, or what stops an
+/// expansion.
+pub(super) fn solve(
+    oscillator: &Oscillator,
+    parts: &Parts,
+    options: &Options,
+) -> Result<Solution, Refusal> {
     let in_amplitude = || {
         let options = Options {
             small: Some(AmplitudeConvention::Initial.symbol().to_string()),
@@ -58,7 +66,12 @@ pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -
         return Ok(found);
     }
     let found = expanded(oscillator, parts, options);
-    let refused = |refusal: &Refusal| matches!(refusal, Refusal::Oscillator(OscillatorError::NotPolynomial(_)));
+    let refused = |refusal: &Refusal| {
+        matches!(
+            refusal,
+            Refusal::Oscillator(OscillatorError::NotPolynomial(_))
+        )
+    };
     // What is no polynomial may be one for small motions.
     match options.small.is_none() && found.as_ref().is_err_and(refused) {
         true => in_amplitude().or(found),
@@ -80,7 +93,11 @@ fn undriven_oscillator(oscillator: &Oscillator, parts: &Parts) -> Result<Oscilla
 }
 
 /// The same with the small parameter that is asked for, or the likeliest.
-fn expanded(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Solution, Refusal> {
+fn expanded(
+    oscillator: &Oscillator,
+    parts: &Parts,
+    options: &Options,
+) -> Result<Solution, Refusal> {
     let drive = Drive::of(parts, oscillator, Method::MultipleScales)?;
     let free = undriven_oscillator(oscillator, parts)?;
     let parts = free.parts()?;
@@ -137,7 +154,10 @@ fn expanded(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result
 
 /// Whether a force of some order has a term that is not linear.
 fn has_nonlinear_terms(force: &PerturbedForce) -> bool {
-    force.terms.iter().any(|term| term.position + term.velocity > 1)
+    force
+        .terms
+        .iter()
+        .any(|term| term.position + term.velocity > 1)
 }
 
 /// Whether a force is linear in the coordinate and the velocity.
@@ -160,7 +180,10 @@ pub(in crate::method) fn is_of_resonance(refusal: &Refusal) -> bool {
     let Refusal::Unsuited { reason, .. } = refusal else {
         return false;
     };
-    matches!(reason, Unsuited::NoResonance { .. } | Unsuited::FarFromResonance { .. })
+    matches!(
+        reason,
+        Unsuited::NoResonance { .. } | Unsuited::FarFromResonance { .. }
+    )
 }
 
 /// A driven motion that is to be expanded, by the method that asks.
@@ -231,7 +254,12 @@ impl Asked<'_> {
             return Err(Unsuited::ResonanceWithoutDamping { term: term.into() }.to(self.method));
         }
         let found = self.at(resonance, scaling)?.ok_or_else(|| {
-            let others = self.drive.resonances().into_iter().filter(reaches).collect();
+            let others = self
+                .drive
+                .resonances()
+                .into_iter()
+                .filter(reaches)
+                .collect();
             let asked = resonance;
             Unsuited::NoResonance { asked, others }.to(self.method)
         })?;
@@ -241,17 +269,27 @@ impl Asked<'_> {
         Ok(found)
     }
 
-    /// The answer at the likeliest resonance that is not far away; `None` where the drive reaches none.
-    pub(in crate::method) fn answer_near(&self, scaling: &Scaling) -> Option<Result<Solution, Refusal>> {
+    /// The answer at the likeliest resonance that is not far away; `None` where the drive reaches
+    /// none.
+    pub(in crate::method) fn answer_near(
+        &self,
+        scaling: &Scaling,
+    ) -> Option<Result<Solution, Refusal>> {
         let near = self.near(scaling);
-        let is_near = |resonance| near.is_none_or(|ratio| is_near(resonance, ratio, self.method).is_ok());
+        let is_near =
+            |resonance| near.is_none_or(|ratio| is_near(resonance, ratio, self.method).is_ok());
         let mut candidates = self.candidates(scaling).into_iter();
-        let found = candidates.find(|candidate| is_near(*candidate) && self.reaches(*candidate, scaling))?;
+        let found = candidates
+            .find(|candidate| is_near(*candidate) && self.reaches(*candidate, scaling))?;
         self.at(found, scaling).transpose()
     }
 
     /// The answer at a resonance; `None` where the drive does not reach the motion there.
-    pub(in crate::method) fn at(&self, resonance: (u32, u32), scaling: &Scaling) -> Result<Option<Solution>, Refusal> {
+    pub(in crate::method) fn at(
+        &self,
+        resonance: (u32, u32),
+        scaling: &Scaling,
+    ) -> Result<Option<Solution>, Refusal> {
         if !is_ratio(resonance) {
             return Ok(None);
         }
@@ -274,8 +312,16 @@ impl Asked<'_> {
 /// Whether a linear force without damping is driven at its own frequency.
 fn grows(scaling: &Scaling, drive: &Drive, (p, q): (u32, u32)) -> bool {
     let own = drive.terms.iter().find(|driven| p * driven.multiple == q);
-    let squared = own.and_then(|driven| drive.frequency_of(driven).integer_power(2).ok()?.expand().ok());
-    scaling.force.terms.is_empty() && squared.is_some_and(|squared| squared == scaling.force.linear_in_full())
+    let squared = own.and_then(|driven| {
+        drive
+            .frequency_of(driven)
+            .integer_power(2)
+            .ok()?
+            .expand()
+            .ok()
+    });
+    scaling.force.terms.is_empty()
+        && squared.is_some_and(|squared| squared == scaling.force.linear_in_full())
 }
 
 /// A question to the expansion.
@@ -297,7 +343,11 @@ pub(super) struct Question<'a> {
 }
 
 impl<'a> Question<'a> {
-    fn new(asked: &Asked<'a>, scaling: &'a Scaling, resonance: (u32, u32)) -> Result<Self, Refusal> {
+    fn new(
+        asked: &Asked<'a>,
+        scaling: &'a Scaling,
+        resonance: (u32, u32),
+    ) -> Result<Self, Refusal> {
         let (oscillator, drive) = (asked.oscillator, asked.drive);
         let LinearPart {
             frequency: linear_frequency,
@@ -316,7 +366,11 @@ impl<'a> Question<'a> {
             .collect();
         let several = hard.len() > 1;
         let lambda = |multiple: u32| {
-            let number = if several { multiple.to_string() } else { String::new() };
+            let number = if several {
+                multiple.to_string()
+            } else {
+                String::new()
+            };
             ["", "_s"].map(|ending| fresh(&format!("Lambda{number}{ending}"), &taken))
         };
         Ok(Self {
@@ -330,7 +384,10 @@ impl<'a> Question<'a> {
             definitions,
             names: Names::new(&taken, oscillator.coordinate, scaling.marker),
             sigma: fresh("sigma", &taken),
-            lambda: hard.into_iter().map(|multiple| (multiple, lambda(multiple))).collect(),
+            lambda: hard
+                .into_iter()
+                .map(|multiple| (multiple, lambda(multiple)))
+                .collect(),
             taken,
         })
     }
@@ -343,13 +400,18 @@ impl<'a> Question<'a> {
     /// A driven term in powers of what is small.
     fn scaled(&self, driven: &Driven) -> Result<DrivenTerm, Refusal> {
         let own = [self.oscillator.coordinate, self.oscillator.velocity()];
-        let not_polynomial = || Refusal::from(OscillatorError::NotPolynomial(driven.term.clone().into()));
-        let polynomial = driven.factor.to_polynomial(&mut |_| None)?.ok_or_else(not_polynomial)?;
+        let not_polynomial =
+            || Refusal::from(OscillatorError::NotPolynomial(driven.term.clone().into()));
+        let polynomial = driven
+            .factor
+            .to_polynomial(&mut |_| None)?
+            .ok_or_else(not_polynomial)?;
         let (monomial, number) = polynomial.single_term().ok_or_else(not_polynomial)?;
         let exponent = |name| u32::try_from(monomial.exponent(name)).map_err(|_| not_polynomial());
         let (position, velocity) = (exponent(own[0])?, exponent(own[1])?);
         let mut rest = monomial.without(own[0]).without(own[1]);
-        let small = || std::iter::once(self.scaling.small).chain(self.scaling.small_with.iter().copied());
+        let small =
+            || std::iter::once(self.scaling.small).chain(self.scaling.small_with.iter().copied());
         let written: i32 = small().map(|name| rest.exponent(name)).sum();
         if let Some(marker) = self.scaling.marker {
             rest = rest.without(marker);
@@ -372,8 +434,14 @@ impl<'a> Question<'a> {
             order,
             position,
             velocity,
-            coefficient: self.scaling.force.written_with_frequency(coefficient, &names),
-            drive: Some(((self.resonance.0 * driven.multiple) as i32, driven.quadrature)),
+            coefficient: self
+                .scaling
+                .force
+                .written_with_frequency(coefficient, &names),
+            drive: Some((
+                (self.resonance.0 * driven.multiple) as i32,
+                driven.quadrature,
+            )),
         })
     }
 
@@ -383,7 +451,11 @@ impl<'a> Question<'a> {
         let mut terms: Vec<DrivenTerm> = self.scaling.force.terms.iter().map(undriven).collect();
         let mut forced: BTreeMap<u32, Complex> = BTreeMap::new();
         for driven in &self.drive.terms {
-            if let Some(lambda) = self.lambda.get(&driven.multiple).filter(|_| self.is_hard(driven)) {
+            if let Some(lambda) = self
+                .lambda
+                .get(&driven.multiple)
+                .filter(|_| self.is_hard(driven))
+            {
                 let [cosine, sine] = lambda.map(Polynomial::symbol);
                 let forced = forced.entry(driven.multiple).or_insert_with(Complex::zero);
                 match driven.quadrature {
@@ -405,8 +477,8 @@ impl<'a> Question<'a> {
         if still {
             terms.retain(|term| term.velocity % 2 == 0 && term.drive.is_none());
         }
-        let turning =
-            Polynomial::symbol(self.sigma).product(&Polynomial::constant(ratio(1, i64::from(p) * i64::from(q))));
+        let turning = Polynomial::symbol(self.sigma)
+            .product(&Polynomial::constant(ratio(1, i64::from(p) * i64::from(q))));
         let scaled = Scaled {
             terms,
             linear_frequency: self.linear_frequency.clone(),
@@ -437,11 +509,17 @@ impl<'a> Question<'a> {
     fn forced_sizes(&self) -> Result<Vec<Definition>, Refusal> {
         let mut found = vec![];
         let symbols = self.lambda.iter().flat_map(|(multiple, symbols)| {
-            let quadratures = [Quadrature::Cosine, Quadrature::Sine].into_iter().zip(symbols);
+            let quadratures = [Quadrature::Cosine, Quadrature::Sine]
+                .into_iter()
+                .zip(symbols);
             quadratures.map(|(quadrature, symbol)| (*multiple, quadrature, *symbol))
         });
         for (multiple, quadrature, symbol) in symbols {
-            let hard = self.drive.terms.iter().filter(|driven| self.is_hard(driven));
+            let hard = self
+                .drive
+                .terms
+                .iter()
+                .filter(|driven| self.is_hard(driven));
             let own: Vec<&Driven> = hard
                 .filter(|driven| (driven.multiple, driven.quadrature) == (multiple, quadrature))
                 .collect();
@@ -482,14 +560,19 @@ struct Found {
 
 impl Question<'_> {
     fn answer(&self, found: &Found) -> Result<Solution, Refusal> {
-        let Found { expansion, slow, still } = found;
+        let Found {
+            expansion,
+            slow,
+            still,
+        } = found;
         let (p, q) = self.resonance;
         let (names, scaling, drive) = (&self.names, self.scaling, self.drive);
         let rates = slow.rates(self)?;
         let (p_rational, q_rational) = (ratio(p.into(), 1), ratio(q.into(), 1));
         let linear = Expr::from(&self.linear_frequency);
-        let detuning =
-            (&(&Expr::number(q_rational) * &drive.frequency) - &(&Expr::number(p_rational) * &linear)).expand()?;
+        let detuning = (&(&Expr::number(q_rational) * &drive.frequency)
+            - &(&Expr::number(p_rational) * &linear))
+            .expand()?;
         let mut definitions = self.definitions.clone();
         let sigma = Definition {
             symbol: self.sigma,
@@ -508,7 +591,11 @@ impl Question<'_> {
         let backbone = self.unmarked(&backbone(&Slow::still(&still.phase), self));
         let averaged = self.method == Method::Averaging;
         // Averaging has its motion to one order less than its rates.
-        let highest = if averaged { scaling.order - 1 } else { scaling.order };
+        let highest = if averaged {
+            scaling.order - 1
+        } else {
+            scaling.order
+        };
         let response = response(self, expansion, slow, highest as usize)?;
         let mut validity = vec![scaling.cut_note()];
         validity.push(Note::Driven {
@@ -548,7 +635,8 @@ impl Question<'_> {
         Ok(motion.into_solution(self.oscillator))
     }
 
-    /// What counts as small beside the small parameters of the answer: the detuning, and drives without such a parameter.
+    /// What counts as small beside the small parameters of the answer: the detuning, and drives
+    /// without such a parameter.
     fn counted_small(&self) -> Vec<Expr> {
         let mut small = vec![Expr::from(self.sigma)];
         for driven in self.drive.terms.iter().filter(|driven| driven.above == 0) {

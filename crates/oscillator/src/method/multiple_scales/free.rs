@@ -1,5 +1,5 @@
-//! Free motions: slow equations in the amplitude alone, solved from a start where they can be; of a self-excited one the limit
-//! cycle on which it ends as well.
+//! Free motions: slow equations in the amplitude alone, solved from a start where they can be; of a
+//! self-excited one the limit cycle on which it ends as well.
 
 use num_traits::Zero as _;
 
@@ -22,15 +22,21 @@ use crate::solution::modulation::Release;
 use crate::solution::{Definition, Law, LimitCycle, Modulation, Note, Solution};
 use crate::symbol::{Symbol, fresh};
 
-/// Default and highest orders in a parameter and in the amplitude, of which an odd force has every other one.
+/// Default and highest orders in a parameter and in the amplitude, of which an odd force has every
+/// other one.
 const DEFAULT: [u32; 2] = [2, 4];
 const HIGHEST: [u32; 2] = [3, 6];
 
 /// The slow equations of a free motion and what follows from them.
 ///
 /// # Errors
-/// What stops an expansion, an order above those that there are, a limit cycle without a closed form.
-pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -> Result<Solution, Refusal> {
+/// What stops an expansion, an order above those that there are, a limit cycle without a closed
+/// form.
+pub(super) fn solve(
+    oscillator: &Oscillator,
+    parts: &Parts,
+    options: &Options,
+) -> Result<Solution, Refusal> {
     let mut scaling = scaling(oscillator, parts, options, DEFAULT, HIGHEST)?;
     scaling.force.write_with_frequency(&oscillator.names());
     let linear = LinearPart::of(&scaling.force, oscillator);
@@ -59,7 +65,14 @@ pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -
     };
     let rates = [&free.slow.amplitude, &free.slow.phase].map(|rate| free.written(&free.cut(rate)));
     let rates = rates.each_ref().map(Expr::from);
-    let derivation = derivation(&expansion, &scaling, &names, &linear.frequency, &rates, None)?;
+    let derivation = derivation(
+        &expansion,
+        &scaling,
+        &names,
+        &linear.frequency,
+        &rates,
+        None,
+    )?;
     let mut found = Found {
         definitions: linear.definitions.clone(),
         law: Law::Frequency(free.written(&free.cut(&free.slow.phase))),
@@ -73,7 +86,9 @@ pub(super) fn solve(oscillator: &Oscillator, parts: &Parts, options: &Options) -
         free.settle(cycles, &mut found)?;
     }
     found.definitions.extend(scaling.bookkeeping.clone());
-    found.validity.extend(linear.root.clone().map(Note::Positive));
+    found
+        .validity
+        .extend(linear.root.clone().map(Note::Positive));
     // Where the amplitude changes the motion has a start.
     if !found.modulation.is_conservative() {
         free.start(&mut found, &oscillator.names());
@@ -129,16 +144,20 @@ impl Free<'_> {
         }
     }
 
-    /// The rate of the amplitude to the lowest order at which it changes: where its terms balance, as in `mu*a/2 - a^3/8`, the damping
-    /// is as small as `a^2`, as it was taken to be. A term of higher order, as in `-zeta*a + 3*zeta*a^3/8`, balances it at an amplitude that
-    /// is not small, of which the expansion says nothing.
+    /// The rate of the amplitude to the lowest order at which it changes: where its terms balance,
+    /// as in `mu*a/2 - a^3/8`, the damping is as small as `a^2`, as it was taken to be. A term of
+    /// higher order, as in `-zeta*a + 3*zeta*a^3/8`, balances it at an amplitude that is not small,
+    /// of which the expansion says nothing.
     fn leading_amplitude_rate(&self) -> Expr {
         let rate = &self.slow.amplitude;
-        let lowest = rate.exponent_range(self.names.marker).map_or(0, |(lowest, _)| lowest);
+        let lowest = rate
+            .exponent_range(self.names.marker)
+            .map_or(0, |(lowest, _)| lowest);
         Expr::from(&self.written(&rate.truncated(self.names.marker, lowest)))
     }
 
-    /// Puts the motion on the limit cycle that was chosen; the motion in the amplitude is kept beside it.
+    /// Puts the motion on the limit cycle that was chosen; the motion in the amplitude is kept
+    /// beside it.
     fn settle(&self, cycles: &Cycles, found: &mut Found) -> Result<(), Refusal> {
         let (scaling, names) = (self.scaling, self.names);
         let cycle = &cycles.cycles[cycles.number - 1];
@@ -161,28 +180,43 @@ impl Free<'_> {
         let limit_cycle = LimitCycle {
             amplitude: self.written(&cycle.reduced(&self.cut(&at))),
             number: cycles.number,
-            cycles: all.map(|cycle| cycle.to_leading(names.marker, scaling.small)).collect(),
+            cycles: all
+                .map(|cycle| cycle.to_leading(names.marker, scaling.small))
+                .collect(),
             small_with: scaling.small_with.clone(),
         };
         found.modulation.steady = limit_cycle.cycles.clone();
         found.limit_cycle = Some(limit_cycle);
         found.validity.push(Note::Stability(leading));
         found.validity.extend(cycle.remark.clone());
-        found.validity.extend(cycle.definition.clone().map(Note::Positive));
-        let settled = self.motion.map(POLYNOMIALS, |coefficient, _| put(coefficient));
+        found
+            .validity
+            .extend(cycle.definition.clone().map(Note::Positive));
+        let settled = self
+            .motion
+            .map(POLYNOMIALS, |coefficient, _| put(coefficient));
         found.modulation.motion = Some(std::mem::replace(&mut found.displacement, settled));
         found.law = Law::Frequency(put(&self.slow.phase));
         Ok(())
     }
 
-    /// Where a motion released at rest begins, to the order to which the slow equations tell it, and its closed form from there.
+    /// Where a motion released at rest begins, to the order to which the slow equations tell it,
+    /// and its closed form from there.
     fn start(&self, found: &mut Found, names: &[Symbol]) {
         let order = (self.scaling.order as usize).saturating_sub(1);
         let rates = [&self.slow.amplitude, &self.slow.phase];
-        let begins = release(&self.motion, rates, &self.linear.frequency, self.names, order);
+        let begins = release(
+            &self.motion,
+            rates,
+            &self.linear.frequency,
+            self.names,
+            order,
+        );
         let mut begins = match begins {
             Some(begins) => {
-                let [amplitude, phase] = begins.each_ref().map(|part| Expr::from(&self.written(part)));
+                let [amplitude, phase] = begins
+                    .each_ref()
+                    .map(|part| Expr::from(&self.written(part)));
                 Release { amplitude, phase }
             }
             None => Release::at_start(),
@@ -191,7 +225,8 @@ impl Free<'_> {
         let taken: Vec<Symbol> = names.iter().copied().chain(defined).collect();
         let modulation = &mut found.modulation;
         let rates = [&modulation.amplitude_rate, &modulation.phase_rate];
-        let (named, transient) = transient::from_release(modulation.amplitude, rates, &mut begins, &taken);
+        let (named, transient) =
+            transient::from_release(modulation.amplitude, rates, &mut begins, &taken);
         found.definitions.extend::<Vec<Definition>>(named);
         modulation.transient = transient;
         modulation.release = Some(begins);

@@ -1,19 +1,22 @@
-//! The method of multiple scales: a slow time for each order, amplitude and phase that change on them.
+//! The method of multiple scales: a slow time for each order, amplitude and phase that change on
+//! them.
 //!
-//! Reference: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 2.3.3 (free), 3.1 to 3.4 (damped and
-//! self-excited), 4.1 and 5.7 (driven).
+//! Reference: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 2.3.3
+//! (free), 3.1 to 3.4 (damped and self-excited), 4.1 and 5.7 (driven).
 //!
 //! ```text
 //! x = a cos(theta) + sum eps^k x_k(a, theta)
 //! a' = sum eps^k f_k(a),   theta' = omega0 + sum eps^k g_k(a),   f_k + i a g_k = 2 e^(-i beta) D_k B,  B = (a/2) e^(i beta)
 //! ```
 //!
-//! What the slow derivatives `D_k B` are is for `slow_times`. The motion leaves out homogeneous solutions, so `a` is the
-//! amplitude of the first harmonic to every order. A free conservative motion keeps its amplitude, and `theta'` is its
-//! frequency; a self-excited one ends where `f = 0`, on a limit cycle.
+//! What the slow derivatives `D_k B` are is for `slow_times`. The motion leaves out homogeneous
+//! solutions, so `a` is the amplitude of the first harmonic to every order. A free conservative
+//! motion keeps its amplitude, and `theta'` is its frequency; a self-excited one ends where
+//! `f = 0`, on a limit cycle.
 //!
-//! Parameters that have to vanish together, as in `x'' + 2*zeta*x' + x + eps*x^3 = 0`, count as equally small. In powers of the
-//! amplitude a linear damping counts as its square, so that it appears beside the first effect of a cubic force.
+//! Parameters that have to vanish together, as in `x'' + 2*zeta*x' + x + eps*x^3 = 0`, count as
+//! equally small. In powers of the amplitude a linear damping counts as its square, so that it
+//! appears beside the first effect of a cubic force.
 //!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;

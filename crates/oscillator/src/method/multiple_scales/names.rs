@@ -1,4 +1,5 @@
-//! What a derivation by multiple scales introduces: the names of the complex amplitude, the slow phase, the orders.
+//! What a derivation by multiple scales introduces: the names of the complex amplitude, the slow
+//! phase, the orders.
 
 use num_traits::Zero as _;
 
@@ -18,7 +19,8 @@ pub(super) struct Names {
     pub(super) amplitude: Symbol,
     /// The imaginary unit.
     pub(super) unit: Symbol,
-    /// What the orders of the motion are called before their numbers, and the rates of `B` on the times.
+    /// What the orders of the motion are called before their numbers, and the rates of `B` on the
+    /// times.
     pub(super) orders: [String; 2],
 }
 
@@ -46,8 +48,11 @@ impl Names {
     pub(super) fn polar(&self, polynomial: &Polynomial) -> Polynomial {
         let mut result = Polynomial::zero();
         for (monomial, number) in polynomial.terms() {
-            let exponent = monomial.exponent(self.complex.own) + monomial.exponent(self.complex.conjugate);
-            let rest = monomial.without(self.complex.own).without(self.complex.conjugate);
+            let exponent =
+                monomial.exponent(self.complex.own) + monomial.exponent(self.complex.conjugate);
+            let rest = monomial
+                .without(self.complex.own)
+                .without(self.complex.conjugate);
             let halves = Rational::new(1.into(), 2.into()).pow(exponent);
             result.add_term(
                 rest.product(&Monomial::power_of(self.amplitude, exponent)),

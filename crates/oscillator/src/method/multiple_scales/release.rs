@@ -15,8 +15,8 @@ use crate::series::FourierSeries;
 use crate::solution::AmplitudeConvention;
 use crate::symbol::Symbol;
 
-/// `a(0)` and `theta(0)` in `A`, up to an order of the marker, from the motion and its slow equations; `None` where they have powers
-/// of the amplitude below zero.
+/// `a(0)` and `theta(0)` in `A`, up to an order of the marker, from the motion and its slow
+/// equations; `None` where they have powers of the amplitude below zero.
 pub(super) fn release(
     motion: &FourierSeries<Polynomials>,
     [amplitude_rate, phase_rate]: [&Polynomial; 2],
@@ -34,7 +34,8 @@ pub(super) fn release(
         .product(&constant(amplitude_rate))
         .sum(&motion.derivative().product(&constant(phase_rate)));
     let start = AmplitudeConvention::Initial.symbol();
-    let over = Polynomial::term(Monomial::power_of(start, -1), ratio(1, 1)).product(&linear_frequency.power(-1)?);
+    let over = Polynomial::term(Monomial::power_of(start, -1), ratio(1, 1))
+        .product(&linear_frequency.power(-1)?);
     let minus = Polynomial::constant(ratio(-1, 1));
     let (mut amplitude, mut phase) = (Polynomial::symbol(start), Polynomial::zero());
     for _ in 0..order {
@@ -56,7 +57,10 @@ fn value(
 ) -> Option<Polynomial> {
     let mut sum = Polynomial::zero();
     for (harmonic, cosine, sine) in series.harmonics() {
-        let angle = phase.product(&Polynomial::constant(ratio(i64::try_from(harmonic).ok()?, 1)));
+        let angle = phase.product(&Polynomial::constant(ratio(
+            i64::try_from(harmonic).ok()?,
+            1,
+        )));
         let [cos, sin] = waves(&angle, order, cut);
         for (coefficient, wave) in [(cosine, cos), (sine, sin)] {
             let coefficient = cut(&coefficient.substitute(a, amplitude)?);
@@ -67,7 +71,11 @@ fn value(
 }
 
 /// Cosine and sine of an angle that is small, by their power series.
-fn waves(angle: &Polynomial, order: i64, cut: &dyn Fn(&Polynomial) -> Polynomial) -> [Polynomial; 2] {
+fn waves(
+    angle: &Polynomial,
+    order: i64,
+    cut: &dyn Fn(&Polynomial) -> Polynomial,
+) -> [Polynomial; 2] {
     let (mut cos, mut sin) = (Polynomial::zero(), Polynomial::zero());
     let mut term = Polynomial::constant(ratio(1, 1));
     for power in 0..=order {

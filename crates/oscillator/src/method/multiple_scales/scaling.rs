@@ -1,9 +1,10 @@
 //! What counts as small, and in which power: the force as terms of an expansion.
 //!
-//! In: an equation and the small parameter asked for. Out: a `Scaling`. A parameter whose vanishing leaves the linear
-//! oscillator marks the orders; several that have to vanish together count as equally small; otherwise the amplitude marks
-//! them, a linear damping by the power at which the nonlinear terms change the frequency first: its square for quadratic and cubic terms,
-//! its fourth power for `x^5` alone.
+//! In: an equation and the small parameter asked for. Out: a `Scaling`. A parameter whose vanishing
+//! leaves the linear oscillator marks the orders; several that have to vanish together count as
+//! equally small; otherwise the amplitude marks them, a linear damping by the power at which the
+//! nonlinear terms change the frequency first: its square for quadratic and cubic terms, its fourth
+//! power for `x^5` alone.
 
 use num_traits::One;
 
@@ -33,7 +34,8 @@ pub(in crate::method) struct Scaling {
     pub(in crate::method) bookkeeping: Option<Definition>,
     /// A linear damping that counts as a [power](Self::small_order) of the amplitude.
     pub(in crate::method) damping: Option<Expr>,
-    /// The order at which detuning, damping and a small drive enter: that at which the amplitude changes the frequency first.
+    /// The order at which detuning, damping and a small drive enter: that at which the amplitude
+    /// changes the frequency first.
     pub(in crate::method) small_order: usize,
     pub(in crate::method) order: u32,
 }
@@ -54,8 +56,9 @@ impl Scaling {
         result
     }
 
-    /// The same with the small parameter, or the number, in the coefficients and a marker that is one: for a motion in which something
-    /// is small without having it, such as the detuning. An expansion in the amplitude stays as it is.
+    /// The same with the small parameter, or the number, in the coefficients and a marker that is
+    /// one: for a motion in which something is small without having it, such as the detuning. An
+    /// expansion in the amplitude stays as it is.
     pub(super) fn spelt_out(mut self, taken: &[Symbol]) -> Self {
         let (Some(marker), None) = (self.marker, &self.marks) else {
             return self;
@@ -86,9 +89,16 @@ impl Scaling {
     /// How the expansion is cut.
     pub(super) fn cut_note(&self) -> Note {
         let together = self.small_with.iter().copied();
-        let bookkeeping = self.bookkeeping.as_ref().map(|definition| definition.meaning.clone());
+        let bookkeeping = self
+            .bookkeeping
+            .as_ref()
+            .map(|definition| definition.meaning.clone());
         // The marker itself is the small parameter where no letter is one.
-        let marker = || self.marks.clone().filter(|_| self.marker == Some(self.small));
+        let marker = || {
+            self.marks
+                .clone()
+                .filter(|_| self.marker == Some(self.small))
+        };
         Note::Cut(Cut::Truncated {
             small: std::iter::once(self.small).chain(together).collect(),
             order: self.order,
@@ -97,7 +107,8 @@ impl Scaling {
     }
 }
 
-/// The force of a free motion with its orders; defaults and highest orders are those in a parameter and in the amplitude.
+/// The force of a free motion with its orders; defaults and highest orders are those in a parameter
+/// and in the amplitude.
 ///
 /// # Errors
 /// A term that is not small or no polynomial, by name; an order above those that there are.
@@ -129,7 +140,9 @@ pub(super) fn scaling(
             }
             Err(OscillatorError::NotSmall { .. }) if !parts.damping.is_zero() => {}
             // A name alone says little: what is no polynomial may be one for small motions.
-            Err(error @ OscillatorError::NotPolynomial(_)) if options.small.is_none() => refused = Some(error),
+            Err(error @ OscillatorError::NotPolynomial(_)) if options.small.is_none() => {
+                refused = Some(error)
+            }
             Err(error) => return Err(error.into()),
         }
     }
@@ -149,8 +162,9 @@ pub(super) fn scaling(
     }
 }
 
-/// The expansion in parameters that are small together, or in one that marks all terms but the linear one of an equation that
-/// may have a limit cycle; `None` where the amplitude is to be the small parameter.
+/// The expansion in parameters that are small together, or in one that marks all terms but the
+/// linear one of an equation that may have a limit cycle; `None` where the amplitude is to be the
+/// small parameter.
 fn together(
     oscillator: &Oscillator,
     parts: &Parts,
@@ -199,8 +213,11 @@ fn in_amplitude(oscillator: &Oscillator, order: u32) -> Result<Scaling, Refusal>
     let (rest, damping) = without_linear_damping(oscillator)?;
     let mut force = rest.expand(SmallParameter::Amplitude, order)?;
     if !damping.is_zero() {
-        let not_polynomial = || Refusal::from(OscillatorError::NotPolynomial(damping.clone().into()));
-        let coefficient = damping.to_polynomial(&mut |_| None)?.ok_or_else(not_polynomial)?;
+        let not_polynomial =
+            || Refusal::from(OscillatorError::NotPolynomial(damping.clone().into()));
+        let coefficient = damping
+            .to_polynomial(&mut |_| None)?
+            .ok_or_else(not_polynomial)?;
         let over = Monomial::power_of(velocity, -1);
         force.terms.push(Term {
             order: small_order,
@@ -226,14 +243,16 @@ fn in_amplitude(oscillator: &Oscillator, order: u32) -> Result<Scaling, Refusal>
 /// The order in the amplitude at which cubic and quadratic terms change the frequency.
 const SHIFT_OF_A_CUBE: u32 = 2;
 
-/// The order in the amplitude as which damping, detuning and a small drive count: that at which the nonlinear terms change the frequency
-/// first, but to a lower order, which has none of these terms, its own.
+/// The order in the amplitude as which damping, detuning and a small drive count: that at which the
+/// nonlinear terms change the frequency first, but to a lower order, which has none of these terms,
+/// its own.
 pub fn order_of_balance(oscillator: &Oscillator, order: u32) -> u32 {
     order_of_shift(oscillator).min(order.max(SHIFT_OF_A_CUBE))
 }
 
-/// The order in the amplitude at which the terms of a force change the frequency first: `n - 1` of an odd power `n`, `2 (n - 1)` of an even
-/// one; that of a cubic force where no term is known that does.
+/// The order in the amplitude at which the terms of a force change the frequency first: `n - 1` of
+/// an odd power `n`, `2 (n - 1)` of an even one; that of a cubic force where no term is known that
+/// does.
 fn order_of_shift(oscillator: &Oscillator) -> u32 {
     const HIGHEST: u32 = 8;
     let Ok((oscillator, _)) = without_linear_damping(oscillator) else {
@@ -256,15 +275,15 @@ fn order_of_shift(oscillator: &Oscillator) -> u32 {
     SHIFT_OF_A_CUBE
 }
 
-/// Whether quadratic terms are there about `x = 0`: what they do to the frequency is as large as what cubic ones do, and comes one order
-/// later where both count as equally small.
+/// Whether quadratic terms are there about `x = 0`: what they do to the frequency is as large as
+/// what cubic ones do, and comes one order later where both count as equally small.
 pub(in crate::method) fn has_quadratic_terms(oscillator: &Oscillator) -> bool {
     let expanded = in_amplitude(oscillator, 1);
     expanded.is_ok_and(|scaling| scaling.force.terms.iter().any(|term| term.order == 1))
 }
 
-/// Whether a quadratic term drains or feeds energy about `x = 0`, as `x*x'` does: with other quadratic terms it acts on the amplitude as
-/// a cubic damping does.
+/// Whether a quadratic term drains or feeds energy about `x = 0`, as `x*x'` does: with other
+/// quadratic terms it acts on the amplitude as a cubic damping does.
 pub(in crate::method) fn has_quadratic_damping(oscillator: &Oscillator) -> bool {
     let expanded = in_amplitude(oscillator, 1);
     let drains = |term: &Term| term.order == 1 && term.velocity % 2 == 1;
@@ -273,12 +292,17 @@ pub(in crate::method) fn has_quadratic_damping(oscillator: &Oscillator) -> bool 
 
 /// Whether all that damps is proportional to the velocity alone.
 pub(in crate::method) fn has_linear_damping(oscillator: &Oscillator, parts: &Parts) -> bool {
-    let is_all = |linear: Expr| (&linear - &parts.damping).expand().is_ok_and(|rest| rest.is_zero());
+    let is_all = |linear: Expr| {
+        (&linear - &parts.damping)
+            .expand()
+            .is_ok_and(|rest| rest.is_zero())
+    };
     linear_damping(&parts.damping, oscillator).is_ok_and(is_all)
 }
 
-/// What is linear at rest of the terms that damp in proportion to the velocity: of `4*nu*x'/(1 + x)^2` it is `4*nu*x'`. A steep function
-/// of the velocity, as for dry friction, is no small damping.
+/// What is linear at rest of the terms that damp in proportion to the velocity: of
+/// `4*nu*x'/(1 + x)^2` it is `4*nu*x'`. A steep function of the velocity, as for dry friction, is
+/// no small damping.
 fn linear_damping(damping: &Expr, oscillator: &Oscillator) -> Result<Expr, ExprError> {
     let velocity = Expr::from(oscillator.velocity());
     let mut linear = Vec::new();
@@ -286,7 +310,10 @@ fn linear_damping(damping: &Expr, oscillator: &Oscillator) -> Result<Expr, ExprE
         let factor = Expr::divide(term, &velocity)?;
         let proportional = !factor.contains(oscillator.velocity());
         // Without a value at rest the expansion refuses it by name.
-        if let (true, Ok(at_rest)) = (proportional, factor.substitute(oscillator.coordinate, &Expr::zero())) {
+        if let (true, Ok(at_rest)) = (
+            proportional,
+            factor.substitute(oscillator.coordinate, &Expr::zero()),
+        ) {
             linear.push(at_rest * velocity.clone());
         }
     }
@@ -303,7 +330,9 @@ fn without_linear_damping(oscillator: &Oscillator) -> Result<(Oscillator, Expr),
 
 fn order_of(options: &Options, default: u32, highest: u32) -> Result<u32, Refusal> {
     match options.order {
-        Some(asked) if asked > highest => Err(Unsuited::HighestOrder { highest }.to(Method::MultipleScales)),
+        Some(asked) if asked > highest => {
+            Err(Unsuited::HighestOrder { highest }.to(Method::MultipleScales))
+        }
         Some(asked) => Ok(asked),
         None => Ok(default),
     }
@@ -316,8 +345,12 @@ fn within_reach(force: &PerturbedForce, order: u32) -> Result<(), secular::Secul
 }
 
 /// As [`within_reach`], for the powers alone.
-pub(in crate::method) fn bounded(powers: impl Iterator<Item = u32>, order: u32) -> Result<(), secular::SecularError> {
-    /// Every harmonic of a power has coefficients in `B` and its conjugate, which grow with the order.
+pub(in crate::method) fn bounded(
+    powers: impl Iterator<Item = u32>,
+    order: u32,
+) -> Result<(), secular::SecularError> {
+    /// Every harmonic of a power has coefficients in `B` and its conjugate, which grow with the
+    /// order.
     const MOST: u32 = 200;
     let degree = powers.max().unwrap_or(0);
     match degree.saturating_mul(order.max(1).saturating_pow(2)) > MOST && degree > 9 {

@@ -1,6 +1,8 @@
-//! The expansion in slow times: what each order adds to the motion, and how fast the complex amplitude changes on each time.
+//! The expansion in slow times: what each order adds to the motion, and how fast the complex
+//! amplitude changes on each time.
 //!
-//! Reference: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 2.3.3, 4.1 and 5.7.
+//! Reference: A. H. Nayfeh, D. T. Mook, *Nonlinear Oscillations*, Wiley 1979, sections 2.3.3, 4.1
+//! and 5.7.
 //!
 //! ```text
 //! x = sum eps^k x_k(T0, T1, ...),   T_k = eps^k t,   d/dt = D0 + eps D1 + eps^2 D2 + ...
@@ -9,10 +11,12 @@
 //! no e^(i s phi) on the right:   2 i omega0 D_k B = what stands there without it
 //! ```
 //!
-//! Time derivatives are taken one after the other, so `D_i D_j` follows by the chain rule from the `D_k B` found before, and
-//! there are as many slow times as there are orders. `x_k` has no homogeneous solution. A free motion has `s = 1` and turns with
-//! the linear frequency; a driven one turns with a fraction of the driving frequency, from which the linear frequency is detuned.
-//! `Lambda e^(i r phi)` solves the linear equation with a drive far from resonance, so the two drop out together.
+//! Time derivatives are taken one after the other, so `D_i D_j` follows by the chain rule from the
+//! `D_k B` found before, and there are as many slow times as there are orders. `x_k` has no
+//! homogeneous solution. A free motion has `s = 1` and turns with the linear frequency; a driven
+//! one turns with a fraction of the driving frequency, from which the linear frequency is detuned.
+//! `Lambda e^(i r phi)` solves the linear equation with a drive far from resonance, so the two drop
+//! out together.
 
 use std::collections::BTreeMap;
 
@@ -45,7 +49,8 @@ pub(super) struct Amplitude {
 /// A real function of the fast phase: the coefficient of `e^(i m phi)` by `m`, of both signs.
 pub(super) type Wave = BTreeMap<i32, Complex>;
 
-/// A term of the force on the left side, `eps^order coefficient x^position x'^velocity` times a wave of the drive.
+/// A term of the force on the left side, `eps^order coefficient x^position x'^velocity` times a
+/// wave of the drive.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct DrivenTerm {
     /// Power of the small parameter, at least one.
@@ -56,7 +61,8 @@ pub(super) struct DrivenTerm {
     pub velocity: u32,
     /// The rest, without the small parameter.
     pub coefficient: Polynomial,
-    /// The wave `cos(m phi)` or `sin(m phi)` of the drive; `None` for a force that does not know the time.
+    /// The wave `cos(m phi)` or `sin(m phi)` of the drive; `None` for a force that does not know
+    /// the time.
     pub drive: Option<(i32, Quadrature)>,
 }
 
@@ -70,7 +76,8 @@ pub(super) struct Scaled {
     pub own: i32,
     /// How much faster than `omega0/s` the fast phase turns, and at which order.
     pub detuning: Option<(usize, Polynomial)>,
-    /// Motions that drives far from resonance force at leading order: their harmonics `r`, and `Lambda` of each.
+    /// Motions that drives far from resonance force at leading order: their harmonics `r`, and
+    /// `Lambda` of each.
     pub forced: Vec<(i32, Complex)>,
     /// The highest order.
     pub order: usize,
@@ -166,9 +173,13 @@ impl Amplitude {
     fn exchanged(self, polynomial: &Polynomial) -> Polynomial {
         let mut result = Polynomial::zero();
         for (monomial, number) in polynomial.terms() {
-            let (p, q) = (monomial.exponent(self.own), monomial.exponent(self.conjugate));
+            let (p, q) = (
+                monomial.exponent(self.own),
+                monomial.exponent(self.conjugate),
+            );
             let rest = monomial.without(self.own).without(self.conjugate);
-            let turned = Monomial::power_of(self.own, q).product(&Monomial::power_of(self.conjugate, p));
+            let turned =
+                Monomial::power_of(self.own, q).product(&Monomial::power_of(self.conjugate, p));
             result.add_term(rest.product(&turned), number.clone());
         }
         result
@@ -218,10 +229,19 @@ fn mirrored(mut wave: Wave, amplitude: Amplitude) -> Wave {
 }
 
 /// Power series of waves, cut after `highest`.
-fn series_product(left: &[Wave], right: &[Wave], highest: usize, amplitude: Amplitude) -> Vec<Wave> {
+fn series_product(
+    left: &[Wave],
+    right: &[Wave],
+    highest: usize,
+    amplitude: Amplitude,
+) -> Vec<Wave> {
     let mut result = vec![Wave::new(); highest + 1];
     for (i, a) in left.iter().enumerate() {
-        for (j, b) in right.iter().enumerate().take((highest + 1).saturating_sub(i)) {
+        for (j, b) in right
+            .iter()
+            .enumerate()
+            .take((highest + 1).saturating_sub(i))
+        {
             if !a.is_empty() && !b.is_empty() {
                 accumulate(&mut result[i + j], &product(a, b, amplitude));
             }
@@ -231,7 +251,10 @@ fn series_product(left: &[Wave], right: &[Wave], highest: usize, amplitude: Ampl
 }
 
 fn series_power(base: &[Wave], exponent: u32, highest: usize, amplitude: Amplitude) -> Vec<Wave> {
-    let mut result = vec![Wave::from([(0, Complex::real(Polynomial::constant(Rational::one())))])];
+    let mut result = vec![Wave::from([(
+        0,
+        Complex::real(Polynomial::constant(Rational::one())),
+    )])];
     let mut square = base.to_vec();
     let mut rest = exponent;
     while rest > 0 {
@@ -249,7 +272,10 @@ fn series_power(base: &[Wave], exponent: u32, highest: usize, amplitude: Amplitu
 impl Scaled {
     /// Expands to the highest order.
     pub(super) fn expand(&self, amplitude: Amplitude) -> Expansion {
-        let inverse = self.linear_frequency.power(-1).unwrap_or_else(Polynomial::zero);
+        let inverse = self
+            .linear_frequency
+            .power(-1)
+            .unwrap_or_else(Polynomial::zero);
         let own = Complex::real(Polynomial::symbol(amplitude.own));
         let mut found = Expansion {
             displacement: vec![mirrored(Wave::from([(self.own, own)]), amplitude)],
@@ -269,7 +295,10 @@ impl Scaled {
             }
             let mut right = self.derivative(&found, 0, &moving, amplitude);
             for j in 1..=order {
-                accumulate(&mut right, &self.derivative(&found, j, &velocity[order - j], amplitude));
+                accumulate(
+                    &mut right,
+                    &self.derivative(&found, j, &velocity[order - j], amplitude),
+                );
             }
             let total = |own: &[Wave], forced: &[Wave]| -> Vec<Wave> {
                 let sum = |k: usize| {
@@ -281,7 +310,10 @@ impl Scaled {
             };
             let positions = total(&found.displacement, &forced);
             let velocities = total(&velocity, &forced_velocity);
-            accumulate(&mut right, &self.force(order, &positions, &velocities, amplitude));
+            accumulate(
+                &mut right,
+                &self.force(order, &positions, &velocities, amplitude),
+            );
             for term in right.values_mut() {
                 *term = Complex::zero().minus(term);
             }
@@ -341,14 +373,24 @@ impl Scaled {
             if !rate.is_zero() {
                 add(&mut result, *m, &value.slope(amplitude.own).product(rate));
                 let conjugate = rate.conjugate(amplitude);
-                add(&mut result, *m, &value.slope(amplitude.conjugate).product(&conjugate));
+                add(
+                    &mut result,
+                    *m,
+                    &value.slope(amplitude.conjugate).product(&conjugate),
+                );
             }
         }
         mirrored(result, amplitude)
     }
 
     /// The force beside the linear one at an order, along a motion known to the order below.
-    fn force(&self, order: usize, positions: &[Wave], velocities: &[Wave], amplitude: Amplitude) -> Wave {
+    fn force(
+        &self,
+        order: usize,
+        positions: &[Wave],
+        velocities: &[Wave],
+        amplitude: Amplitude,
+    ) -> Wave {
         let mut sum = Wave::new();
         for term in self.terms.iter().filter(|term| term.order <= order) {
             let highest = order - term.order;
@@ -378,7 +420,10 @@ impl Scaled {
             .map(|(m, value)| {
                 let m = i64::from(*m);
                 let divisor = Polynomial::constant(ratio(own * own, own * own - m * m));
-                (m as i32, value.times(&divisor.product(inverse).product(inverse)))
+                (
+                    m as i32,
+                    value.times(&divisor.product(inverse).product(inverse)),
+                )
             });
         solved.collect()
     }

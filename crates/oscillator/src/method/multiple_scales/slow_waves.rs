@@ -1,4 +1,5 @@
-//! The slow equations of a driven motion as waves of the slow phase, and the steady motions that they have.
+//! The slow equations of a driven motion as waves of the slow phase, and the steady motions that
+//! they have.
 
 use std::collections::BTreeMap;
 
@@ -30,7 +31,11 @@ impl Slow {
     }
 
     /// What some of the orders add.
-    pub(super) fn of_orders(expansion: &Expansion, question: &Question, wanted: impl Fn(usize) -> bool) -> Self {
+    pub(super) fn of_orders(
+        expansion: &Expansion,
+        question: &Question,
+        wanted: impl Fn(usize) -> bool,
+    ) -> Self {
         let zero = || [Polynomial::zero(), Polynomial::zero()];
         let (mut amplitude, mut phase) = (BTreeMap::new(), BTreeMap::new());
         let names = &question.names;
@@ -40,8 +45,13 @@ impl Slow {
             let mark = names.mark(k);
             for (part, imaginary) in [(&rate.real, false), (&rate.imaginary, true)] {
                 for (monomial, number) in part.terms() {
-                    let turns = monomial.exponent(names.complex.own) - monomial.exponent(names.complex.conjugate) - 1;
-                    let term = Polynomial::term(monomial.clone(), number * Rational::from_integer(2.into()));
+                    let turns = monomial.exponent(names.complex.own)
+                        - monomial.exponent(names.complex.conjugate)
+                        - 1;
+                    let term = Polynomial::term(
+                        monomial.clone(),
+                        number * Rational::from_integer(2.into()),
+                    );
                     let term = names.polar(&term).times_monomial(&mark);
                     let multiple = i64::from(turns).unsigned_abs() / p.unsigned_abs();
                     let multiple = u32::try_from(multiple).unwrap_or(u32::MAX);
@@ -76,7 +86,8 @@ impl Slow {
         self.multiple() > 0
     }
 
-    /// The multiple of the phase of which all that turns is a multiple: one, unless a symmetry makes it more; zero where nothing turns.
+    /// The multiple of the phase of which all that turns is a multiple: one, unless a symmetry
+    /// makes it more; zero where nothing turns.
     fn multiple(&self) -> u32 {
         let moving = self.amplitude.iter().chain(&self.phase);
         let moving = moving.filter(|(_, waves)| !waves.iter().all(Zero::is_zero));
@@ -95,7 +106,9 @@ impl Slow {
 
     /// What does not turn with the phase: `P` or `Q`.
     pub(super) fn still(waves: &PhaseWaves) -> Polynomial {
-        waves.get(&0).map_or_else(Polynomial::zero, |waves| waves[0].clone())
+        waves
+            .get(&0)
+            .map_or_else(Polynomial::zero, |waves| waves[0].clone())
     }
 
     /// `a'` and `psi'`.
@@ -103,9 +116,14 @@ impl Slow {
         let names = &question.names;
         let times = Rational::from_integer(question.resonance.0.into());
         let over = Polynomial::term(Monomial::power_of(names.amplitude, -1), times);
-        let amplitude = Self::expression(&self.amplitude, names.phase, &|part| question.unmarked(part))?;
+        let amplitude = Self::expression(&self.amplitude, names.phase, &|part| {
+            question.unmarked(part)
+        })?;
         let by_amplitude = |part: &Polynomial| question.unmarked(&part.product(&over));
-        Ok([amplitude, Self::expression(&self.phase, names.phase, &by_amplitude)?])
+        Ok([
+            amplitude,
+            Self::expression(&self.phase, names.phase, &by_amplitude)?,
+        ])
     }
 
     fn expression(
@@ -125,7 +143,8 @@ impl Slow {
     }
 }
 
-/// The frequency of the motion itself where `Q = 0` without damping and drive, in powers of the marker: `omega0 + sigma/p`.
+/// The frequency of the motion itself where `Q = 0` without damping and drive, in powers of the
+/// marker: `omega0 + sigma/p`.
 pub(super) fn backbone(still: &Polynomial, question: &Question) -> Polynomial {
     let names = &question.names;
     let order = question.scaling.order as i32;
@@ -138,7 +157,10 @@ pub(super) fn backbone(still: &Polynomial, question: &Question) -> Polynomial {
     let slope = rest.coefficient(&own);
     rest.add_term(own, -slope.clone());
     let over = Polynomial::term(
-        Monomial::power_of(a, -1).product(&Monomial::power_of(names.marker, -(question.small_order() as i32))),
+        Monomial::power_of(a, -1).product(&Monomial::power_of(
+            names.marker,
+            -(question.small_order() as i32),
+        )),
         if slope.is_zero() {
             Rational::zero()
         } else {
@@ -154,12 +176,15 @@ pub(super) fn backbone(still: &Polynomial, question: &Question) -> Polynomial {
         detuning = next.truncated(names.marker, order - question.small_order() as i32);
     }
     let p = Polynomial::constant(ratio(1, question.resonance.0.into()));
-    let mut frequency = detuning.product(&p).times_monomial(&names.mark(question.small_order()));
+    let mut frequency = detuning
+        .product(&p)
+        .times_monomial(&names.mark(question.small_order()));
     frequency.accumulate(&question.linear_frequency);
     frequency
 }
 
-/// Everything that follows from the slow equations of a steady motion, which is itself written to an order of its own.
+/// Everything that follows from the slow equations of a steady motion, which is itself written to
+/// an order of its own.
 pub(super) fn response(
     question: &Question,
     expansion: &Expansion,
@@ -213,8 +238,10 @@ pub(super) fn motion(
         for (m, value) in wave.iter().filter(|entry| *entry.0 >= 0) {
             for (part, imaginary) in [(&value.real, false), (&value.imaginary, true)] {
                 for (monomial, number) in part.terms() {
-                    let turns =
-                        i64::from(monomial.exponent(names.complex.own) - monomial.exponent(names.complex.conjugate));
+                    let turns = i64::from(
+                        monomial.exponent(names.complex.own)
+                            - monomial.exponent(names.complex.conjugate),
+                    );
                     let factor = if *m == 0 { ratio(1, 1) } else { ratio(2, 1) };
                     let term = names.polar(&Polynomial::term(monomial.clone(), number * factor));
                     let term = question.unmarked(&term.times_monomial(&names.mark(k)));
@@ -228,7 +255,8 @@ pub(super) fn motion(
     // e^(i m phi) B^j Bc^l with phi = Omega t/p and B = (a/2) e^(-i psi/p).
     let mut terms = Vec::new();
     for ((m, turns), [real, imaginary]) in &waves {
-        let angle = &(&Expr::number(ratio(*m, p)) * &omega_t) - &(&Expr::number(ratio(*turns, p)) * &psi);
+        let angle =
+            &(&Expr::number(ratio(*m, p)) * &omega_t) - &(&Expr::number(ratio(*turns, p)) * &psi);
         terms.push(&Expr::from(real) * &angle.cos()?);
         if !imaginary.is_zero() {
             terms.push(&(-&Expr::from(imaginary)) * &angle.sin()?);
@@ -237,28 +265,40 @@ pub(super) fn motion(
     Ok(Expr::sum(terms))
 }
 
-/// The slow equations in `u = a cos(psi/p)` and `v = -a sin(psi/p)`, that is `2 B = u + i v`: without a singular origin.
+/// The slow equations in `u = a cos(psi/p)` and `v = -a sin(psi/p)`, that is `2 B = u + i v`:
+/// without a singular origin.
 fn plane(question: &Question, expansion: &Expansion, coordinates: [Symbol; 2]) -> Plane {
     let names = &question.names;
     let mut parts: BTreeMap<Part, BTreeMap<usize, Complex>> = BTreeMap::new();
     for (k, rate) in expansion.rates.iter().enumerate().skip(1) {
         for (terms, imaginary) in [(&rate.real, false), (&rate.imaginary, true)] {
             for (monomial, number) in terms.terms() {
-                let turns = monomial.exponent(names.complex.own) - monomial.exponent(names.complex.conjugate) - 1;
+                let turns = monomial.exponent(names.complex.own)
+                    - monomial.exponent(names.complex.conjugate)
+                    - 1;
                 let part = match (turns, imaginary) {
                     (0, false) => Part::Drains,
                     (0, true) => Part::Turns,
                     (turns, _) => Part::Wave(turns.unsigned_abs()),
                 };
                 let term = in_plane(monomial, number, names, coordinates);
-                let order = parts.entry(part).or_default().entry(k).or_insert_with(Complex::zero);
+                let order = parts
+                    .entry(part)
+                    .or_default()
+                    .entry(k)
+                    .or_insert_with(Complex::zero);
                 let mark = Complex::real(Polynomial::term(names.mark(k), ratio(1, 1)));
                 let term = term.product(&mark);
                 order.accumulate(&if imaginary { term.times_i() } else { term });
             }
         }
     }
-    let unmarked = |sum: &Complex| [question.unmarked(&sum.real), question.unmarked(&sum.imaginary)];
+    let unmarked = |sum: &Complex| {
+        [
+            question.unmarked(&sum.real),
+            question.unmarked(&sum.imaginary),
+        ]
+    };
     let mut rates = Complex::zero();
     for order in parts.values().flat_map(BTreeMap::values) {
         rates.accumulate(order);
@@ -296,9 +336,17 @@ fn in_plane(monomial: &Monomial, number: &Rational, names: &Names, [u, v]: [Symb
         real: Polynomial::symbol(u).product(&half),
         imaginary: Polynomial::symbol(v).product(&Polynomial::constant(ratio(sign, 2))),
     };
-    let rest = monomial.without(names.complex.own).without(names.complex.conjugate);
-    let mut term = Complex::real(Polynomial::term(rest, number * Rational::from_integer(2.into())));
-    for (name, value) in [(names.complex.own, of(1)), (names.complex.conjugate, of(-1))] {
+    let rest = monomial
+        .without(names.complex.own)
+        .without(names.complex.conjugate);
+    let mut term = Complex::real(Polynomial::term(
+        rest,
+        number * Rational::from_integer(2.into()),
+    ));
+    for (name, value) in [
+        (names.complex.own, of(1)),
+        (names.complex.conjugate, of(-1)),
+    ] {
         for _ in 0..monomial.exponent(name) {
             term = term.product(&value);
         }

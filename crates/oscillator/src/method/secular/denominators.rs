@@ -1,9 +1,11 @@
 //! The denominators of an expansion, guessed from its first orders.
 //!
-//! The elimination divides order `n` by `1 - k^2` for its harmonics `k`, so that no prime above the highest harmonic can stand in a
-//! denominator, and their powers grow by what `lcm(1 .. highest)` has of them. Often much cancels: Duffing's denominators
-//! are powers of two, the pendulum's divide `64^n (2n+1)!`. Which of these it is is read off the first orders, half of them to
-//! fit and the other half to test. It is a guess: every number that is found with it is tried modulo one more prime.
+//! The elimination divides order `n` by `1 - k^2` for its harmonics `k`, so that no prime above the
+//! highest harmonic can stand in a denominator, and their powers grow by what `lcm(1 .. highest)`
+//! has of them. Often much cancels: Duffing's denominators are powers of two, the pendulum's divide
+//! `64^n (2n+1)!`. Which of these it is is read off the first orders, half of them to fit and the
+//! other half to test. It is a guess: every number that is found with it is tried modulo one more
+//! prime.
 
 use std::sync::LazyLock;
 
@@ -13,7 +15,8 @@ use num_traits::{One, ToPrimitive, Zero};
 use crate::exact::residue::{Modulus, primes_up_to};
 use crate::exact::{Integer, Rational};
 
-/// The primes that are looked for in denominators: larger ones come from coefficients with such a number in them.
+/// The primes that are looked for in denominators: larger ones come from coefficients with such a
+/// number in them.
 static SMALL: LazyLock<Vec<u64>> = LazyLock::new(|| primes_up_to(1000));
 
 /// A positive whole number by its prime factors, in order, and their exponents.
@@ -116,7 +119,9 @@ impl Factored {
     pub fn value(&self) -> Integer {
         let powers = self.0.iter();
         powers
-            .map(|(prime, exponent)| Integer::from(*prime).pow(u32::try_from(*exponent).unwrap_or(u32::MAX)))
+            .map(|(prime, exponent)| {
+                Integer::from(*prime).pow(u32::try_from(*exponent).unwrap_or(u32::MAX))
+            })
             .product()
     }
 
@@ -128,9 +133,15 @@ impl Factored {
             .map(|factor| factor.1.checked_ilog2().map_or(0, |log| log + 1));
         let digits = digits.max().unwrap_or(0);
         let with_digit = |digit: u32| -> Vec<u64> {
-            let factors = self.0.iter().filter(|(_, exponent)| exponent >> digit & 1 == 1);
+            let factors = self
+                .0
+                .iter()
+                .filter(|(_, exponent)| exponent >> digit & 1 == 1);
             let primes: Vec<u64> = factors.map(|factor| factor.0).collect();
-            words(&primes).into_iter().map(|lot| lot.iter().product()).collect()
+            words(&primes)
+                .into_iter()
+                .map(|lot| lot.iter().product())
+                .collect()
         };
         Ladder((0..digits).rev().map(with_digit).collect())
     }
@@ -162,7 +173,8 @@ impl Factored {
         if numerator.is_zero() {
             return Rational::zero();
         }
-        let (mut numerator, mut denominator, mut left) = (numerator.clone(), value.clone(), self.clone());
+        let (mut numerator, mut denominator, mut left) =
+            (numerator.clone(), value.clone(), self.clone());
         loop {
             let common = left.common(std::slice::from_ref(&numerator));
             if common.is_one() {
@@ -210,7 +222,8 @@ impl Factored {
 
     /// The highest powers of these primes in all of the numbers, at most those of this one.
     fn least_powers(&self, primes: &[u64], numbers: &[&Integer]) -> Vec<(u64, u64)> {
-        // Squares first, several in a word; alone, as high as a word goes, those that have more than a square.
+        // Squares first, several in a word; alone, as high as a word goes, those that have more
+        // than a square.
         let squares: Vec<u64> = primes.iter().map(|prime| prime * prime).collect();
         let mut least: Vec<(u64, u64)> = primes
             .iter()
@@ -240,8 +253,8 @@ impl Factored {
     }
 }
 
-/// A number by the binary digits of the exponents of its primes, the highest first: for each digit the product of the primes that
-/// have it, in words. A square for each digit serves all primes.
+/// A number by the binary digits of the exponents of its primes, the highest first: for each digit
+/// the product of the primes that have it, in words. A square for each digit serves all primes.
 pub(super) struct Ladder(Vec<Vec<u64>>);
 
 impl Ladder {
@@ -249,9 +262,9 @@ impl Ladder {
     pub fn residue(&self, modulus: &Modulus) -> u64 {
         self.0.iter().fold(modulus.one, |power, words| {
             let square = modulus.product(power, power);
-            words
-                .iter()
-                .fold(square, |product, word| modulus.product(product, modulus.residue(*word)))
+            words.iter().fold(square, |product, word| {
+                modulus.product(product, modulus.residue(*word))
+            })
         })
     }
 }
@@ -345,9 +358,15 @@ pub(super) enum Growth {
 
 impl Growth {
     /// From the one with the shortest numbers on.
-    pub const ALL: [Self; 4] = [Self::Power, Self::Factorial, Self::Multiples, Self::FactorialMultiples];
+    pub const ALL: [Self; 4] = [
+        Self::Power,
+        Self::Factorial,
+        Self::Multiples,
+        Self::FactorialMultiples,
+    ];
 
-    /// The numbers of all orders up to `highest`; `largest_factor` is that of the divisors of each order.
+    /// The numbers of all orders up to `highest`; `largest_factor` is that of the divisors of each
+    /// order.
     fn of_orders(self, highest: usize, largest_factor: &dyn Fn(usize) -> u64) -> Vec<Factored> {
         let mut numbers = vec![Factored::default()];
         let primes = match self {
@@ -375,8 +394,8 @@ impl Growth {
         numbers
     }
 
-    /// The denominators of all orders up to `highest` if those of the first ones, `known`, are of this growth; the known ones as
-    /// they are.
+    /// The denominators of all orders up to `highest` if those of the first ones, `known`, are of
+    /// this growth; the known ones as they are.
     pub fn denominators(
         self,
         known: &[Factored],
@@ -389,18 +408,26 @@ impl Growth {
             for (order, own) in known.iter().enumerate().take(count).skip(1) {
                 let rest = own.over(&numbers[order]);
                 for (prime, exponent) in rest.0 {
-                    base.set(prime, base.exponent(prime).max(exponent.div_ceil(order as u64)));
+                    base.set(
+                        prime,
+                        base.exponent(prime).max(exponent.div_ceil(order as u64)),
+                    );
                 }
             }
             base
         };
         let base = fitted(known.len());
-        // The last resort is not tested here: what it says is tried modulo another prime, as everything is.
+        // The last resort is not tested here: what it says is tried modulo another prime, as
+        // everything is.
         let last_resort = matches!(self, Self::Multiples | Self::FactorialMultiples);
         let untested = last_resort || known.len() > highest;
-        // Factorials have primes that no divisor of the elimination has, and hide how fast the exponents of small ones grow.
-        let beyond =
-            |(order, own): (usize, &Factored)| own.0.last().is_some_and(|factor| factor.0 > largest_factor(order));
+        // Factorials have primes that no divisor of the elimination has, and hide how fast the
+        // exponents of small ones grow.
+        let beyond = |(order, own): (usize, &Factored)| {
+            own.0
+                .last()
+                .is_some_and(|factor| factor.0 > largest_factor(order))
+        };
         let foreign = self == Self::Factorial && !known.iter().enumerate().any(beyond);
         if !untested && (foreign || fitted(known.len().div_ceil(2)) != base) {
             return None;
@@ -409,7 +436,10 @@ impl Growth {
             Some(known) => known.clone(),
             None => {
                 let mut power = base.clone();
-                power.0.iter_mut().for_each(|factor| factor.1 *= order as u64);
+                power
+                    .0
+                    .iter_mut()
+                    .for_each(|factor| factor.1 *= order as u64);
                 power.times(&numbers[order])
             }
         };
@@ -430,7 +460,10 @@ mod tests {
     fn factors_and_lowest_terms() {
         let number = Factored::of(&integer(720_720)).expect("small factors");
         assert_eq!(number.value(), integer(720_720));
-        assert_eq!(number.lowest_terms(integer(-1001 * 9)), (integer(-1), integer(80)));
+        assert_eq!(
+            number.lowest_terms(integer(-1001 * 9)),
+            (integer(-1), integer(80))
+        );
         assert_eq!(number.lowest_terms(integer(0)), (integer(0), integer(1)));
         let common = number.common(&[integer(-36), integer(0), integer(24), integer(12 * 17)]);
         assert_eq!(common.value(), integer(12));
@@ -442,7 +475,10 @@ mod tests {
             &Factored::default(),
             &Factored::of(&integer(6).pow(77)).expect("small factors"),
         ] {
-            assert_eq!(number.ladder().residue(&modulus), modulus.integer(&number.value()));
+            assert_eq!(
+                number.ladder().residue(&modulus),
+                modulus.integer(&number.value())
+            );
         }
         let ratio = |numerator: i64| number.fraction(&integer(numerator), &integer(720_720));
         assert_eq!(ratio(-1001 * 9), Rational::new(integer(-1), integer(80)));
@@ -463,7 +499,9 @@ mod tests {
                 .collect()
         };
         let powers = known(&|n| integer(32).pow(n));
-        let found = Growth::Power.denominators(&powers, 20, &divisors).expect("a power");
+        let found = Growth::Power
+            .denominators(&powers, 20, &divisors)
+            .expect("a power");
         assert_eq!(found[20].value(), integer(32).pow(20));
         let factorials = known(&|n| integer(64).pow(n) * factorial(2 * n + 1));
         assert_eq!(Growth::Power.denominators(&factorials, 20, &divisors), None);
@@ -477,7 +515,10 @@ mod tests {
                 .map(|m| (1..=m).fold(integer(1), |l, k| l.lcm(&integer(k))))
                 .product()
         });
-        assert_eq!(Growth::Factorial.denominators(&multiples, 20, &divisors), None);
+        assert_eq!(
+            Growth::Factorial.denominators(&multiples, 20, &divisors),
+            None
+        );
         let found = Growth::Multiples
             .denominators(&multiples, 20, &divisors)
             .expect("multiples");
@@ -487,7 +528,9 @@ mod tests {
         let slow = known(&|n| multiples[n as usize / 2].value());
         assert!((0..=10).all(|n| factorial(2 * n + 1).is_multiple_of(&slow[n as usize].value())));
         assert_eq!(Growth::Factorial.denominators(&slow, 80, &half), None);
-        let found = Growth::Multiples.denominators(&slow, 80, &half).expect("multiples");
+        let found = Growth::Multiples
+            .denominators(&slow, 80, &half)
+            .expect("multiples");
         assert!(!factorial(161).is_multiple_of(&found[80].value()));
     }
 }

@@ -1,11 +1,11 @@
 //! The first orders of an expansion in numbers of a fixed width, as far as these hold it.
 //!
-//! The recursion of the head of [the module](super) on [short series](crate::series::fixed_width), whose symmetries are those of the
-//! [plan](super::modular) for primes. Low orders need no more than this, and long expansions read off what it finds how their
-//! denominators grow.
+//! The recursion of the head of [the module](super) on [short series](crate::series::fixed_width),
+//! whose symmetries are those of the [plan](super::modular) for primes. Low orders need no more
+//! than this, and long expansions read off what it finds how their denominators grow.
 //!
-//! Cost: for every product `O(N^2 K^2)` multiplications of words to order `N` with `K` harmonics; two words hold Duffing's equation to
-//! order 25.
+//! Cost: for every product `O(N^2 K^2)` multiplications of words to order `N` with `K` harmonics;
+//! two words hold Duffing's equation to order 25.
 
 use super::plan::{Plan, Term};
 use super::{Amplitude, Detuning};
@@ -36,11 +36,16 @@ pub(super) struct Beginning {
 /// Beyond, two words are too short for anything that is known.
 const LONG: usize = 28;
 
-/// The orders up to the highest of the plan, or as many as fit; of a long expansion no more than show how it goes on.
+/// The orders up to the highest of the plan, or as many as fit; of a long expansion no more than
+/// show how it goes on.
 pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> Beginning {
     /// So many orders are enough of a long one.
     const ENOUGH: usize = 16;
-    let last = if plan.highest > LONG { ENOUGH } else { plan.highest };
+    let last = if plan.highest > LONG {
+        ENOUGH
+    } else {
+        plan.highest
+    };
     let mut beginning = Beginning::default();
     if let Some(mut recursion) = Recursion::new(plan) {
         while recursion.complete <= last && !interrupt.is_requested() {
@@ -48,7 +53,10 @@ pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> Beginning {
                 break;
             }
         }
-        beginning.slope = recursion.variation.as_ref().map(|variation| variation.slope.clone());
+        beginning.slope = recursion
+            .variation
+            .as_ref()
+            .map(|variation| variation.slope.clone());
         beginning.orders = recursion.orders();
     }
     beginning
@@ -56,7 +64,8 @@ pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> Beginning {
 
 struct Recursion<'a> {
     plan: &'a Plan<'a>,
-    /// The terms with their coefficients, each over the power whose derivative is meant; without one that does not fit.
+    /// The terms with their coefficients, each over the power whose derivative is meant; without
+    /// one that does not fit.
     terms: Vec<(&'a Term, Option<(i128, i128)>)>,
     /// The tables of the plan, an entry for each order; the first is the motion.
     tables: Vec<Vec<ShortSeries>>,
@@ -84,7 +93,11 @@ struct Variation {
 impl<'a> Recursion<'a> {
     fn new(plan: &'a Plan<'a>) -> Option<Self> {
         let coefficient = |term: &Term, derivative: bool| {
-            let power = if derivative { i128::from(term.position) + 1 } else { 1 };
+            let power = if derivative {
+                i128::from(term.position) + 1
+            } else {
+                1
+            };
             let denominator = term.coefficient.denom().to_i128()?.checked_mul(power)?;
             Some((term.coefficient.numer().to_i128()?, denominator))
         };
@@ -97,7 +110,10 @@ impl<'a> Recursion<'a> {
                 .map(|(term, (_, derivative))| (term, coefficient(term, *derivative)))
                 .collect(),
             sine: match &plan.sine {
-                Some((_, rate)) => Some(Sine::new((rate.numer().to_i128()?, rate.denom().to_i128()?))),
+                Some((_, rate)) => Some(Sine::new((
+                    rate.numer().to_i128()?,
+                    rate.denom().to_i128()?,
+                ))),
                 None => None,
             },
             tables: (0..plan.tables).map(|_| list()).collect(),
@@ -141,7 +157,12 @@ impl<'a> Recursion<'a> {
     /// What is complete.
     fn orders(mut self) -> Vec<Order> {
         let numbers = self.frequency_squared.into_iter().zip(self.frequency);
-        let orders = self.tables.swap_remove(0).into_iter().zip(numbers).take(self.complete);
+        let orders = self
+            .tables
+            .swap_remove(0)
+            .into_iter()
+            .zip(numbers)
+            .take(self.complete);
         orders
             .map(|(displacement, (frequency_squared, frequency))| Order {
                 displacement,
@@ -151,8 +172,8 @@ impl<'a> Recursion<'a> {
             .collect()
     }
 
-    /// Solves the order after those that are known; the last one of a limit cycle gives nothing but the amplitude before it. `None`
-    /// where a number does not fit, and where a secular sine stays.
+    /// Solves the order after those that are known; the last one of a limit cycle gives nothing but
+    /// the amplitude before it. `None` where a number does not fit, and where a secular sine stays.
     fn next_order(&mut self) -> Option<()> {
         let (plan, order) = (self.plan, self.tables[0].len());
         let mut right_side = self.right_side(order)?;
@@ -192,7 +213,11 @@ impl<'a> Recursion<'a> {
         for i in (1..=order / 2).filter(|i| !self.frequency[*i].is_zero()) {
             let (own, other) = (&self.frequency[i], &self.frequency[order - i]);
             let times = if 2 * i == order { 2 } else { 1 };
-            parts.push((-own.numerator(0), own.denominator().checked_mul(times)?, other));
+            parts.push((
+                -own.numerator(0),
+                own.denominator().checked_mul(times)?,
+                other,
+            ));
         }
         combination(&parts).map(ShortSeries::reduced)
     }
@@ -250,7 +275,8 @@ impl<'a> Recursion<'a> {
         Some(parts)
     }
 
-    /// Chooses the amplitude of `y_(order-1)` so that the right side of `order` has no secular sine.
+    /// Chooses the amplitude of `y_(order-1)` so that the right side of `order` has no secular
+    /// sine.
     fn fix_amplitude(&mut self, order: usize, right_side: ShortSeries) -> Option<ShortSeries> {
         let (plan, variation) = (self.plan, self.variation.as_ref()?);
         let sine = right_side.coefficient(plan.resonant())?;
@@ -262,7 +288,9 @@ impl<'a> Recursion<'a> {
         let sign = -slope.numerator(0).signum();
         let amplitude = ShortSeries::constant(
             sine.harmonics(),
-            sine.numerator(0).checked_mul(slope.denominator())?.checked_mul(sign)?,
+            sine.numerator(0)
+                .checked_mul(slope.denominator())?
+                .checked_mul(sign)?,
             sine.denominator().checked_mul(slope.numerator(0).abs())?,
         )?;
         let amplitude = amplitude.reduced();
@@ -315,7 +343,8 @@ impl<'a> Recursion<'a> {
                 Detuning::Acceleration => {
                     let factors = self.frequency.iter().zip(self.derived.iter().rev());
                     let factors = factors.filter(|(factor, _)| !factor.is_zero());
-                    let parts = factors.map(|(factor, own)| (factor.numerator(0), factor.denominator(), own));
+                    let parts = factors
+                        .map(|(factor, own)| (factor.numerator(0), factor.denominator(), own));
                     combination(&parts.collect::<Vec<_>>())?.reduced()
                 }
             };
@@ -344,12 +373,16 @@ impl<'a> Recursion<'a> {
         sum.map(ShortSeries::reduced)
     }
 
-    /// The first variation at order zero; `None` where the secular sine does not depend on the amplitude.
+    /// The first variation at order zero; `None` where the secular sine does not depend on the
+    /// amplitude.
     fn variation(&self) -> Option<Variation> {
         let plan = self.plan;
         // Of y and of omega y': themselves.
         let leaves = 1 + usize::from(plan.has_velocity);
-        let mut tables: Vec<ShortSeries> = self.tables[..leaves].iter().map(|table| table[0].clone()).collect();
+        let mut tables: Vec<ShortSeries> = self.tables[..leaves]
+            .iter()
+            .map(|table| table[0].clone())
+            .collect();
         for product in &plan.products {
             let varied = |varied: usize, other: usize| {
                 let own = std::slice::from_ref(&tables[varied]);
@@ -365,7 +398,11 @@ impl<'a> Recursion<'a> {
         let at = |term: &Term, table: usize| tables.get(table).filter(|_| term.order == 1);
         let plain = sum_of_parts(&self.parts(false, at)?)?;
         let damped = derivative_of_parts(&self.parts(true, at)?)?;
-        let parts: Vec<_> = plain.iter().chain(&damped).map(|part| (-1, 1, part)).collect();
+        let parts: Vec<_> = plain
+            .iter()
+            .chain(&damped)
+            .map(|part| (-1, 1, part))
+            .collect();
         let right_side = combination(&parts)?.reduced();
         let slope = right_side.coefficient(plan.resonant())?;
         (!slope.is_zero()).then_some(Variation {
@@ -449,7 +486,8 @@ impl Sine {
         }
         let sum = convolution(&self.sine[..=order], &self.scaled[..=order])?;
         let over = self.rate.1.checked_mul(number + 1)?;
-        self.cosine.push(combination(&[(self.rate.0, over, &sum)])?.reduced());
+        self.cosine
+            .push(combination(&[(self.rate.0, over, &sum)])?.reduced());
         Some(())
     }
 }

@@ -1,10 +1,12 @@
 //! Elimination of secular terms: the step every perturbation method of this crate shares.
 //!
-//! Reference: A. H. Nayfeh, *Perturbation Methods*, Wiley 1973, section 3.1 (Lindstedt-Poincare); C. M. Andersen and
-//! J. F. Geer, *Power series expansions for the frequency and period of the limit cycle of the van der Pol equation*,
-//! SIAM J. Appl. Math. 42 (1982) 678-693 (limit cycles, order by order).
+//! Reference: A. H. Nayfeh, *Perturbation Methods*, Wiley 1973, section 3.1 (Lindstedt-Poincare);
+//! C. M. Andersen and J. F. Geer, *Power series expansions for the frequency and period of the
+//! limit cycle of the van der Pol equation*, SIAM J. Appl. Math. 42 (1982) 678-693 (limit cycles,
+//! order by order).
 //!
-//! With `tau = omega t`, `x = y_0 + delta y_1 + ...`, `omega^2 = 1 + delta W_1 + ...`, `y_0 = cos tau`:
+//! With `tau = omega t`, `x = y_0 + delta y_1 + ...`, `omega^2 = 1 + delta W_1 + ...`,
+//! `y_0 = cos tau`:
 //!
 //! ```text
 //! y_n'' + y_n = r_n + W_n cos tau,     r_n = - sum_j c_j [y^p (omega y')^q]_(n - a_j) - sum_(0<i<n) W_i y_(n-i)''
@@ -36,15 +38,16 @@ use crate::series::convolution::{Convolutions, Node};
 use crate::series::fourier::{FourierSeries, sum_of_products};
 use crate::solution::AmplitudeConvention;
 
-/// One term `delta^order * coefficient * y^position * y'^velocity` of the force beside the linear `y`.
+/// One term `delta^order * coefficient * y^position * y'^velocity` of the force beside the linear
+/// `y`.
 #[derive(Clone, Debug)]
 pub struct ForceTerm<R: Ring> {
     /// Power of the small parameter, at least one.
     pub order: usize,
     /// Power of `y`.
     pub position: u32,
-    /// Power of `y'` (derivative in the time of the linear frequency; of the frequency itself where the detuning stands
-    /// before `y`).
+    /// Power of `y'` (derivative in the time of the linear frequency; of the frequency itself where
+    /// the detuning stands before `y`).
     pub velocity: u32,
     /// A constant series.
     pub coefficient: FourierSeries<R>,
@@ -55,7 +58,8 @@ pub struct ForceTerm<R: Ring> {
 pub enum Amplitude {
     /// A family of periodic motions, one for every amplitude.
     Free,
-    /// An isolated limit cycle: `y = cos tau` already has the amplitude at which the first order has no secular sine.
+    /// An isolated limit cycle: `y = cos tau` already has the amplitude at which the first order
+    /// has no secular sine.
     Determined,
 }
 
@@ -64,14 +68,16 @@ pub enum Amplitude {
 pub enum Detuning {
     /// `omega^2 = 1 + delta W_1 + ...` before `y''`: Lindstedt and Poincare.
     Acceleration,
-    /// `1 = omega^2 (1 - delta W_1 - ...)` before `y`, all in units of omega^2: homotopy perturbation.
+    /// `1 = omega^2 (1 - delta W_1 - ...)` before `y`, all in units of omega^2: homotopy
+    /// perturbation.
     Displacement,
 }
 
 /// The choices that tell one method from another.
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme {
-    /// What pins down the homogeneous solutions: `y(0) = 1` and `y'(0) = 0`, or the first harmonic of `y` is `cos tau` exactly.
+    /// What pins down the homogeneous solutions: `y(0) = 1` and `y'(0) = 0`, or the first harmonic
+    /// of `y` is `cos tau` exactly.
     pub normalisation: AmplitudeConvention,
     /// Free or determined.
     pub amplitude: Amplitude,
@@ -90,7 +96,8 @@ pub struct Expansion<R: Ring> {
     pub displacement: Vec<FourierSeries<R>>,
     /// `-r_n`'s resonant part at each order, from order one on: what the frequency had to remove.
     pub removed: Vec<FourierSeries<R>>,
-    /// How the amplitude of each `y_n` of a limit cycle was fixed, from order one on; empty where it is free.
+    /// How the amplitude of each `y_n` of a limit cycle was fixed, from order one on; empty where
+    /// it is free.
     pub amplitudes: Vec<SecularSine<R>>,
 }
 
@@ -109,21 +116,23 @@ pub struct SecularSine<R: Ring> {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SecularError {
-    /// A sine at the natural frequency that neither frequency nor amplitude can remove: energy is lost or gained. One that
-    /// [may be zero](Ring::may_be_zero) is taken to be zero.
+    /// A sine at the natural frequency that neither frequency nor amplitude can remove: energy is
+    /// lost or gained. One that [may be zero](Ring::may_be_zero) is taken to be zero.
     #[error("a secular sine remains at order {order}: the motion gains or loses energy")]
     Growth {
         /// The order at which it appears.
         order: usize,
     },
-    /// The amplitude equation at this order is degenerate, or its solution would divide by a sum of symbols, or by what may be
-    /// zero in the ring: an interval around zero, a multiple of the prime.
+    /// The amplitude equation at this order is degenerate, or its solution would divide by a sum of
+    /// symbols, or by what may be zero in the ring: an interval around zero, a multiple of the
+    /// prime.
     #[error("the amplitude cannot be determined at order {order}")]
     Degenerate {
         /// The order at which it fails.
         order: usize,
     },
-    /// The ring of the coefficients has no inverse of a divisor of this order: another prime is needed.
+    /// The ring of the coefficients has no inverse of a divisor of this order: another prime is
+    /// needed.
     #[error("{indivisible}, which order {order} needs")]
     Indivisible {
         /// The order at which it fails.
@@ -143,12 +152,15 @@ pub enum SecularError {
     },
 }
 
-/// An error where a high power makes an expansion to this order far too long; `terms` are the order of each term of the force
-/// and its power of position and velocity together.
+/// An error where a high power makes an expansion to this order far too long; `terms` are the order
+/// of each term of the force and its power of position and velocity together.
 ///
 /// # Errors
 /// [`SecularError::TooManyHarmonics`].
-pub fn bounded(terms: impl Iterator<Item = (usize, u32)>, highest: usize) -> Result<(), SecularError> {
+pub fn bounded(
+    terms: impl Iterator<Item = (usize, u32)>,
+    highest: usize,
+) -> Result<(), SecularError> {
     /// Powers below are left alone: of them any order may be asked for.
     const HIGH_POWER: u32 = 30;
     const MOST_WORK: f64 = 1e9;
@@ -161,7 +173,8 @@ pub fn bounded(terms: impl Iterator<Item = (usize, u32)>, highest: usize) -> Res
     let harmonics = highest
         .saturating_mul(degree.saturating_sub(1) as usize)
         .saturating_add(1);
-    // Products of series of so many harmonics, whose coefficients are as long as binomials of that size.
+    // Products of series of so many harmonics, whose coefficients are as long as binomials of that
+    // size.
     let (orders, length) = (highest as f64, harmonics as f64);
     let work = (orders * length).powi(2) * f64::from(degree).log2() * (length / 32.0).max(1.0);
     match work > MOST_WORK {
@@ -172,8 +185,8 @@ pub fn bounded(terms: impl Iterator<Item = (usize, u32)>, highest: usize) -> Res
 
 /// Expands frequency and displacement to `highest`, inclusive, with coefficients in `ring`.
 ///
-/// Cost: with `H` harmonics at the highest order, every product of the equation takes `O(highest^2 H^2)` coefficient
-/// products in all.
+/// Cost: with `H` harmonics at the highest order, every product of the equation takes
+/// `O(highest^2 H^2)` coefficient products in all.
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -204,8 +217,8 @@ pub fn expand<R: Ring>(
     expand_from_root(ring, force, highest, scheme, None)
 }
 
-/// As [`expand`] over the whole numbers, and with the same result: by many primes where numbers are long. Of the
-/// [frequency alone](Extent::Frequency) where no more is wanted.
+/// As [`expand`] over the whole numbers, and with the same result: by many primes where numbers are
+/// long. Of the [frequency alone](Extent::Frequency) where no more is wanted.
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -249,11 +262,17 @@ pub(crate) fn expand_numbers_supervised(
     supervision: Supervision,
 ) -> Result<Expansion<Integers>, SecularError> {
     bounded(
-        force.iter().map(|term| (term.order, term.position + term.velocity)),
+        force
+            .iter()
+            .map(|term| (term.order, term.position + term.velocity)),
         highest,
     )?;
-    // Where all terms stand at multiples of an order, as with an amplitude that enters squared, so does everything.
-    let step = force.iter().fold(0, |common, term| common.gcd(&term.order)).max(1);
+    // Where all terms stand at multiples of an order, as with an amplitude that enters squared, so
+    // does everything.
+    let step = force
+        .iter()
+        .fold(0, |common, term| common.gcd(&term.order))
+        .max(1);
     let compressed: Vec<ForceTerm<Integers>> = force
         .iter()
         .map(|term| ForceTerm {
@@ -279,8 +298,8 @@ pub(crate) fn expand_numbers_supervised(
     })
 }
 
-/// As [`expand`] over polynomials with whole coefficients, and with the same result: from numbers at many values of the symbols
-/// where there are many products of them.
+/// As [`expand`] over polynomials with whole coefficients, and with the same result: from numbers
+/// at many values of the symbols where there are many products of them.
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -330,7 +349,9 @@ pub(crate) fn expand_polynomials_supervised(
     /// Below, there are few products.
     const MANY: usize = 2;
     bounded(
-        force.iter().map(|term| (term.order, term.position + term.velocity)),
+        force
+            .iter()
+            .map(|term| (term.order, term.position + term.velocity)),
         highest,
     )?;
     if highest >= MANY
@@ -338,7 +359,14 @@ pub(crate) fn expand_polynomials_supervised(
     {
         return Ok(expansion);
     }
-    let mut expansion = expand_supervised(&Polynomials(Integers), force, highest, scheme, None, supervision)?;
+    let mut expansion = expand_supervised(
+        &Polynomials(Integers),
+        force,
+        highest,
+        scheme,
+        None,
+        supervision,
+    )?;
     if extent == Extent::Frequency {
         expansion.forget_motion();
     }
@@ -380,8 +408,9 @@ impl Expansion<Integers> {
     }
 }
 
-/// As [`expand`], about a limit cycle whose amplitude is a symbol for a root: `inverse_slope` is `1/J`, a constant series.
-/// Secular sines vanish by the equation of that root, which the ring does not know, so none is looked for.
+/// As [`expand`], about a limit cycle whose amplitude is a symbol for a root: `inverse_slope` is
+/// `1/J`, a constant series. Secular sines vanish by the equation of that root, which the ring does
+/// not know, so none is looked for.
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -412,10 +441,18 @@ pub fn expand_from_root<R: Ring>(
     scheme: &Scheme,
     inverse_slope: Option<FourierSeries<R>>,
 ) -> Result<Expansion<R>, SecularError> {
-    expand_supervised(ring, force, highest, scheme, inverse_slope, Supervision::default())
+    expand_supervised(
+        ring,
+        force,
+        highest,
+        scheme,
+        inverse_slope,
+        Supervision::default(),
+    )
 }
 
-/// As [`expand_from_root`], to the order that it has reached where it is stopped; the first is waited for.
+/// As [`expand_from_root`], to the order that it has reached where it is stopped; the first is
+/// waited for.
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -428,7 +465,9 @@ pub(crate) fn expand_supervised<R: Ring>(
     supervision: Supervision,
 ) -> Result<Expansion<R>, SecularError> {
     let of_amplitude = usize::from(scheme.amplitude == Amplitude::Determined);
-    let powers = force.iter().map(|term| (term.order, term.position + term.velocity));
+    let powers = force
+        .iter()
+        .map(|term| (term.order, term.position + term.velocity));
     bounded(powers, highest.saturating_add(of_amplitude))?;
     let mut order_by_order = OrderByOrder::new(ring, force, highest, *scheme, inverse_slope);
     supervision.progress.begin(highest);
@@ -558,14 +597,22 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
             }
         }
         for lower in 1..order {
-            terms.push((-1, &self.result.frequency_squared[lower], &self.detuned[order - lower]));
+            terms.push((
+                -1,
+                &self.result.frequency_squared[lower],
+                &self.detuned[order - lower],
+            ));
         }
         sum_of_products(self.ring, &terms)
     }
 
-    /// Chooses the amplitude of `y_(order-1)` so that `right_side` of `order` has no secular sine, and carries the choice
-    /// through everything already computed.
-    fn fix_amplitude(&mut self, order: usize, right_side: FourierSeries<R>) -> Result<FourierSeries<R>, SecularError> {
+    /// Chooses the amplitude of `y_(order-1)` so that `right_side` of `order` has no secular sine,
+    /// and carries the choice through everything already computed.
+    fn fix_amplitude(
+        &mut self,
+        order: usize,
+        right_side: FourierSeries<R>,
+    ) -> Result<FourierSeries<R>, SecularError> {
         let mut terms = Vec::new();
         for (term, product) in self.force.iter().zip(&self.products) {
             if let (1, Some(node)) = (term.order, product) {
@@ -595,7 +642,8 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
             slope,
             amplitude: correction.clone(),
         });
-        self.convolutions.correct(order - 1, &correction, &self.variations);
+        self.convolutions
+            .correct(order - 1, &correction, &self.variations);
         let corrected = self.result.displacement[order - 1].sum(&correction.product(&self.wave()));
         self.detuned[order - 1] = self.detuned(&corrected);
         self.result.displacement[order - 1] = corrected;
@@ -612,9 +660,13 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
 
     fn push_frequency(&mut self, order: usize) -> Result<(), SecularError> {
         let lower = &self.result.frequency;
-        let products: Vec<_> = (1..order).map(|i| (-1, &lower[i], &lower[order - i])).collect();
+        let products: Vec<_> = (1..order)
+            .map(|i| (-1, &lower[i], &lower[order - i]))
+            .collect();
         let squares = sum_of_products(self.ring, &products);
-        let frequency = self.result.frequency_squared[order].sum(&squares).divided_by(2);
+        let frequency = self.result.frequency_squared[order]
+            .sum(&squares)
+            .divided_by(2);
         self.result.frequency.push(divided(order, frequency)?);
         Ok(())
     }
@@ -637,7 +689,8 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
             return particular;
         }
         let sine = particular.derivative().at_zero();
-        let with_phase = particular.difference(&sine.product(&FourierSeries::sin(self.ring.clone(), 1)));
+        let with_phase =
+            particular.difference(&sine.product(&FourierSeries::sin(self.ring.clone(), 1)));
         match self.scheme.amplitude {
             Amplitude::Determined => with_phase,
             Amplitude::Free => with_phase.difference(&with_phase.at_zero().product(&self.wave())),
@@ -653,7 +706,12 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
             // Time is measured in the frequency itself, none of it expanded.
             Detuning::Displacement => displacement.derivative(),
             Detuning::Acceleration => {
-                let derivatives: Vec<_> = self.result.displacement.iter().map(FourierSeries::derivative).collect();
+                let derivatives: Vec<_> = self
+                    .result
+                    .displacement
+                    .iter()
+                    .map(FourierSeries::derivative)
+                    .collect();
                 let products: Vec<_> = (0..=order)
                     .map(|i| (1, &self.result.frequency[i], &derivatives[order - i]))
                     .collect();
@@ -666,7 +724,10 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
 }
 
 /// A series of order `order`, where its ring could divide by all that it had to.
-fn divided<R: Ring>(order: usize, series: FourierSeries<R>) -> Result<FourierSeries<R>, SecularError> {
+fn divided<R: Ring>(
+    order: usize,
+    series: FourierSeries<R>,
+) -> Result<FourierSeries<R>, SecularError> {
     let divided = series.divided();
     divided
         .map(|()| series)
@@ -688,7 +749,12 @@ mod tests {
             .collect()
     }
 
-    pub(super) fn term(order: usize, position: u32, velocity: u32, value: (i64, i64)) -> ForceTerm<Integers> {
+    pub(super) fn term(
+        order: usize,
+        position: u32,
+        velocity: u32,
+        value: (i64, i64),
+    ) -> ForceTerm<Integers> {
         let coefficient = FourierSeries::integer(Integers, value.0).divided_by(value.1);
         ForceTerm {
             order,
@@ -708,7 +774,13 @@ mod tests {
 
     #[test]
     fn duffing_and_van_der_pol_from_the_literature() {
-        let duffing = expand(&Integers, &[term(1, 3, 0, (1, 1))], 4, &scheme(Amplitude::Free)).expect("periodic");
+        let duffing = expand(
+            &Integers,
+            &[term(1, 3, 0, (1, 1))],
+            4,
+            &scheme(Amplitude::Free),
+        )
+        .expect("periodic");
         let expected = [
             ratio(1, 1),
             ratio(3, 4),
@@ -719,8 +791,15 @@ mod tests {
         assert_eq!(numbers(&duffing.frequency_squared), expected);
         // x'' + x + mu (x^2 - 1) x' with x = 2 y: Andersen and Geer 1982.
         let force = [term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1))];
-        let cycle = expand(&Integers, &force, 4, &scheme(Amplitude::Determined)).expect("a limit cycle");
-        let expected = [ratio(1, 1), ratio(0, 1), ratio(-1, 16), ratio(0, 1), ratio(17, 3072)];
+        let cycle =
+            expand(&Integers, &force, 4, &scheme(Amplitude::Determined)).expect("a limit cycle");
+        let expected = [
+            ratio(1, 1),
+            ratio(0, 1),
+            ratio(-1, 16),
+            ratio(0, 1),
+            ratio(17, 3072),
+        ];
         assert_eq!(numbers(&cycle.frequency), expected);
         let amplitudes: Vec<_> = cycle
             .displacement
@@ -740,7 +819,12 @@ mod tests {
 
     #[test]
     fn viscous_damping_leaves_a_secular_sine() {
-        let damped = expand(&Integers, &[term(1, 0, 1, (2, 1))], 3, &scheme(Amplitude::Free));
+        let damped = expand(
+            &Integers,
+            &[term(1, 0, 1, (2, 1))],
+            3,
+            &scheme(Amplitude::Free),
+        );
         assert_eq!(damped.err(), Some(SecularError::Growth { order: 1 }));
     }
 }

@@ -1,12 +1,15 @@
 //! The elimination of secular terms modulo eight primes at once, on values at points.
 //!
-//! The same recursion as in [the ring's own](super), with three changes that make it fast. Products of series are sums of products of
-//! values at [points](crate::series::waves), `sum_i u_i v_(n-i)`, instead of products of Fourier series. A term `y^p (omega y')` is
-//! the derivative of `y^(p+1)/(p+1)` and needs no values of the velocity. And everything is a [residue](crate::exact::residue), of eight
-//! runs side by side: modulo eight primes, or modulo one with eight sets of coefficients.
+//! The same recursion as in [the ring's own](super), with three changes that make it fast. Products
+//! of series are sums of products of values at [points](crate::series::waves), `sum_i u_i v_(n-i)`,
+//! instead of products of Fourier series. A term `y^p (omega y')` is the derivative of
+//! `y^(p+1)/(p+1)` and needs no values of the velocity. And everything is a
+//! [residue](crate::exact::residue), of eight runs side by side: modulo eight primes, or modulo one
+//! with eight sets of coefficients.
 //!
-//! Cost for `P` products to order `N` with `K` harmonics: `P K N^2/2` multiplications of words (half for a square), `K N^2/6` for
-//! each series that is multiplied by the frequency, and `N` transforms each way.
+//! Cost for `P` products to order `N` with `K` harmonics: `P K N^2/2` multiplications of words
+//! (half for a square), `K N^2/6` for each series that is multiplied by the frequency, and `N`
+//! transforms each way.
 
 use std::ops::Range;
 
@@ -44,7 +47,9 @@ impl Image {
         let Some(start) = places.start.checked_sub(self.start) else {
             return &[];
         };
-        self.displacement.get(start..places.end - self.start).unwrap_or(&[])
+        self.displacement
+            .get(start..places.end - self.start)
+            .unwrap_or(&[])
     }
 }
 
@@ -53,7 +58,8 @@ pub(super) struct Recursion<'a, A> {
     arithmetic: A,
     plan: &'a Plan<'a>,
     interrupt: Interrupt,
-    /// Values at the points, an entry for each order; of a product that is no factor of another the latest alone.
+    /// Values at the points, an entry for each order; of a product that is no factor of another the
+    /// latest alone.
     tables: Tables<'a>,
     /// The coefficients of the harmonics of all orders.
     motion: Harmonics<'a>,
@@ -100,7 +106,11 @@ impl<A: Arithmetic> NullaryFnOnce for Prepare<'_, A> {
         };
         let mut coefficients = Vec::with_capacity(plan.terms.len());
         for (term, (_, derivative)) in plan.terms.iter().zip(&plan.of_terms) {
-            let power = if *derivative { i64::from(term.position) + 1 } else { 1 };
+            let power = if *derivative {
+                i64::from(term.position) + 1
+            } else {
+                1
+            };
             coefficients.push(coefficient(moduli, &term.coefficient, power)?);
         }
         Some(Field {
@@ -109,7 +119,11 @@ impl<A: Arithmetic> NullaryFnOnce for Prepare<'_, A> {
             factors: Factors::new(&residues, plan)?,
             coefficients,
             sine: match &plan.sine {
-                Some((_, rate)) => Some(SineFactors::new(&residues, coefficient(moduli, rate, 1)?, plan.last)?),
+                Some((_, rate)) => Some(SineFactors::new(
+                    &residues,
+                    coefficient(moduli, rate, 1)?,
+                    plan.last,
+                )?),
                 None => None,
             },
         })
@@ -262,12 +276,21 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         let has_damping = plan.of_terms.iter().any(|(_, derivative)| *derivative);
         [
             plan.most_harmonics(),
-            if has_damping { plan.most_harmonics() } else { 0 },
+            if has_damping {
+                plan.most_harmonics()
+            } else {
+                0
+            },
         ]
     }
 
     /// All orders in that much [room](Self::room).
-    pub fn new(arithmetic: A, plan: &'a Plan<'a>, interrupt: Interrupt, memory: &'a mut [Lanes]) -> Self {
+    pub fn new(
+        arithmetic: A,
+        plan: &'a Plan<'a>,
+        interrupt: Interrupt,
+        memory: &'a mut [Lanes],
+    ) -> Self {
         let orders = plan.last + 1;
         let points = plan.grid.size();
         let none = Lanes::default();
@@ -293,11 +316,18 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         }
     }
 
-    /// Everything that is wanted, modulo each of up to eight primes; the motion from the order on that is `wanted` of each. `None`
-    /// where a divisor is a multiple of a prime, where a secular sine stays (the ring's own recursion says which), and where it is
-    /// stopped.
-    pub fn images(&mut self, primes: &[u64], wanted: &dyn Fn(usize) -> usize) -> Option<Vec<Image>> {
-        let moduli: Vec<Modulus> = primes.iter().map(|prime| Modulus::new(*prime, A::RADIX)).collect();
+    /// Everything that is wanted, modulo each of up to eight primes; the motion from the order on
+    /// that is `wanted` of each. `None` where a divisor is a multiple of a prime, where a secular
+    /// sine stays (the ring's own recursion says which), and where it is stopped.
+    pub fn images(
+        &mut self,
+        primes: &[u64],
+        wanted: &dyn Fn(usize) -> usize,
+    ) -> Option<Vec<Image>> {
+        let moduli: Vec<Modulus> = primes
+            .iter()
+            .map(|prime| Modulus::new(*prime, A::RADIX))
+            .collect();
         let mut field = Field::new(self.arithmetic, self.plan, &moduli)?;
         let coefficients = std::mem::take(&mut field.coefficients);
         self.expand(&mut field, &coefficients)?;
@@ -407,9 +437,14 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         }
         let twice = residues.difference(square, products);
         self.frequency_squared.push(square);
-        self.frequency.push(residues.product(twice, field.waves.half()));
+        self.frequency
+            .push(residues.product(twice, field.waves.half()));
         let count = self.plan.harmonics(order);
-        multiply(residues, &mut self.right_side[..count], &field.factors.solution);
+        multiply(
+            residues,
+            &mut self.right_side[..count],
+            &field.factors.solution,
+        );
         self.normalise(field, order);
         Some(())
     }
@@ -430,7 +465,9 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             let any = self.mix(field, coefficients, order, derivative);
             let own = if derivative { wave.other() } else { wave };
             match any {
-                true => field.waves.coefficients(&residues, own, &mut self.values, change_here),
+                true => field
+                    .waves
+                    .coefficients(&residues, own, &mut self.values, change_here),
                 false => change_here.fill(Lanes::default()),
             }
             if derivative {
@@ -450,11 +487,24 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         (self.right_side, self.change) = (right_side, change);
     }
 
-    /// The sum of all terms at an order, with a derivative or without, into `values`; whether there are any such terms.
+    /// The sum of all terms at an order, with a derivative or without, into `values`; whether there
+    /// are any such terms.
     #[inline(always)]
-    fn mix(&mut self, field: &Field<A>, coefficients: &[Lanes], order: usize, derivative: bool) -> bool {
+    fn mix(
+        &mut self,
+        field: &Field<A>,
+        coefficients: &[Lanes],
+        order: usize,
+        derivative: bool,
+    ) -> bool {
         self.parts.clear();
-        for ((term, (table, own)), factor) in self.plan.terms.iter().zip(&self.plan.of_terms).zip(coefficients) {
+        for ((term, (table, own)), factor) in self
+            .plan
+            .terms
+            .iter()
+            .zip(&self.plan.of_terms)
+            .zip(coefficients)
+        {
             if *own == derivative && term.order <= order {
                 self.parts.push(Part {
                     factor: *factor,
@@ -463,7 +513,8 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
                 });
             }
         }
-        if let (Some((sine, _)), Some(factors), false) = (&self.plan.sine, &field.sine, derivative) {
+        if let (Some((sine, _)), Some(factors), false) = (&self.plan.sine, &field.sine, derivative)
+        {
             self.parts.push(factors.sine(sine, order));
         }
         if !self.parts.is_empty() {
@@ -502,12 +553,20 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
                 self.values.fill(residues.one());
                 self.tables.write(sine.cosine, 0, &self.values);
             }
-            _ => self.form(residues, &[factors.sine(sine, order), whole], (sine.sine, order)),
+            _ => self.form(
+                residues,
+                &[factors.sine(sine, order), whole],
+                (sine.sine, order),
+            ),
         }
         let products = std::slice::from_ref(&sine.of_cosine);
         convolve(residues, products, &mut self.tables, order);
         if order < self.plan.last {
-            self.form(residues, &[factors.cosine(sine, order)], (sine.cosine, order + 1));
+            self.form(
+                residues,
+                &[factors.cosine(sine, order)],
+                (sine.cosine, order + 1),
+            );
         }
     }
 
@@ -518,7 +577,8 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         self.tables.write(table, order, &self.values);
     }
 
-    /// `out = sum over i in range of frequency_(order-i) series_i`, where orders of the other symmetry are zero.
+    /// `out = sum over i in range of frequency_(order-i) series_i`, where orders of the other
+    /// symmetry are zero.
     #[inline(always)]
     fn delayed(
         &mut self,
@@ -557,10 +617,13 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         }
     }
 
-    /// Chooses the amplitude of `y_(order-1)` so that the right side of `order` has no secular sine.
+    /// Chooses the amplitude of `y_(order-1)` so that the right side of `order` has no secular
+    /// sine.
     #[inline(always)]
     fn fix_amplitude(&mut self, field: &Field<A>, order: usize) {
-        let Some(variation) = &self.of_amplitude else { return };
+        let Some(variation) = &self.of_amplitude else {
+            return;
+        };
         let (residues, plan, resonant) = (&field.residues, self.plan, self.plan.resonant());
         if plan.wave(order) == Wave::Cosine {
             return;
@@ -568,7 +631,13 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         let secular = residues.negative(self.right_side[resonant]);
         let amplitude = residues.product(secular, variation.inverse_slope);
         for (table, change) in variation.tables.iter().enumerate() {
-            vary(residues, &mut self.tables, (table, order - 1), amplitude, change);
+            vary(
+                residues,
+                &mut self.tables,
+                (table, order - 1),
+                amplitude,
+                change,
+            );
         }
         add_multiple(residues, &mut self.right_side, amplitude, &variation.plain);
         let minus = residues.negative(amplitude);
@@ -616,17 +685,23 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         let (wave, count) = (plan.wave(order), plan.harmonics(order));
         let displacement = &self.right_side[..count];
         self.motion.push(plan, order, displacement);
-        field.waves.values(&residues, wave, displacement, &mut self.values);
+        field
+            .waves
+            .values(&residues, wave, displacement, &mut self.values);
         self.tables.write(0, order, &self.values);
         if plan.has_velocity {
             let mut change = std::mem::take(&mut self.change);
             let own = &mut change[..count];
             match plan.scheme.detuning {
-                Detuning::Acceleration => self.delayed(&residues, Delayed::Velocity, order, 0..order + 1, own),
+                Detuning::Acceleration => {
+                    self.delayed(&residues, Delayed::Velocity, order, 0..order + 1, own)
+                }
                 Detuning::Displacement => own.copy_from_slice(displacement),
             }
             multiply(&residues, own, field.factors.derivative(wave));
-            field.waves.values(&residues, wave.other(), own, &mut self.values);
+            field
+                .waves
+                .values(&residues, wave.other(), own, &mut self.values);
             self.tables.write(1, order, &self.values);
             self.change = change;
         }
@@ -634,7 +709,8 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         self.push_sine(field, order);
     }
 
-    /// The first variation at order zero; `None` where the secular sine does not depend on the amplitude.
+    /// The first variation at order zero; `None` where the secular sine does not depend on the
+    /// amplitude.
     #[inline(always)]
     fn variation(&mut self, field: &mut Field<A>, coefficients: &[Lanes]) -> Option<Variation> {
         let (residues, plan) = (field.residues, self.plan);
@@ -663,7 +739,9 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         let (mut plain, mut damped) = (vec![none; count], vec![none; count]);
         for derivative in [false, true] {
             let mut values = vec![none; points];
-            for ((term, (table, own)), factor) in plan.terms.iter().zip(&plan.of_terms).zip(coefficients) {
+            for ((term, (table, own)), factor) in
+                plan.terms.iter().zip(&plan.of_terms).zip(coefficients)
+            {
                 if term.order == 1 && *own == derivative {
                     add_multiple(&residues, &mut values, *factor, &tables[*table]);
                 }
@@ -691,8 +769,8 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     }
 }
 
-/// What the frequency of later orders is multiplied by: `y_n`, with which its derivatives go, and that of the terms with one
-/// velocity.
+/// What the frequency of later orders is multiplied by: `y_n`, with which its derivatives go, and
+/// that of the terms with one velocity.
 #[derive(Clone, Copy)]
 enum Delayed {
     Motion,

@@ -25,8 +25,9 @@ pub(super) struct Order {
 impl Order {
     /// From numbers of a fixed width.
     pub fn of_short(plan: &Plan, order: &fixed_width::Order) -> Self {
-        let constant =
-            |series: &ShortSeries| Rational::new_raw(series.numerator(0).into(), series.denominator().into());
+        let constant = |series: &ShortSeries| {
+            Rational::new_raw(series.numerator(0).into(), series.denominator().into())
+        };
         let motion = &order.displacement;
         let first = match motion.wave {
             Wave::Cosine => motion.coefficient(plan.resonant()),
@@ -34,7 +35,12 @@ impl Order {
         };
         Self {
             denominator: motion.denominator().into(),
-            displacement: motion.numerators().iter().copied().map(Integer::from).collect(),
+            displacement: motion
+                .numerators()
+                .iter()
+                .copied()
+                .map(Integer::from)
+                .collect(),
             first_harmonic: first.as_ref().map_or_else(Rational::zero, constant),
             frequency_squared: constant(&order.frequency_squared),
             frequency: constant(&order.frequency),
@@ -51,7 +57,12 @@ pub(super) fn expansion(
 ) -> Expansion<Integers> {
     let constant = |value: &Rational| match value.is_zero() {
         true => FourierSeries::zero(Integers),
-        false => FourierSeries::in_lowest_terms(Integers, value.denom().clone(), vec![value.numer().clone()], vec![]),
+        false => FourierSeries::in_lowest_terms(
+            Integers,
+            value.denom().clone(),
+            vec![value.numer().clone()],
+            vec![],
+        ),
     };
     let series = |order: usize, denominator: Integer, numerators: Vec<Integer>| {
         let mut coefficients = Vec::with_capacity(plan.harmonic(numerators.len()));
@@ -65,8 +76,14 @@ pub(super) fn expansion(
         };
         FourierSeries::in_lowest_terms(Integers, denominator, cosine, sine)
     };
-    let frequency_squared: Vec<_> = orders.iter().map(|order| constant(&order.frequency_squared)).collect();
-    let frequency = orders.iter().map(|order| constant(&order.frequency)).collect();
+    let frequency_squared: Vec<_> = orders
+        .iter()
+        .map(|order| constant(&order.frequency_squared))
+        .collect();
+    let frequency = orders
+        .iter()
+        .map(|order| constant(&order.frequency))
+        .collect();
     let squares = orders.iter().skip(1).map(|order| &order.frequency_squared);
     let removed = squares.map(|square| constant(&-square)).collect();
     // The first harmonic of a limit cycle is the amplitude that its secular sine has fixed.

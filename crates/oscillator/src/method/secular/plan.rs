@@ -1,8 +1,10 @@
-//! What an expansion by primes consists of, the same for every prime: products, symmetries and points.
+//! What an expansion by primes consists of, the same for every prime: products, symmetries and
+//! points.
 //!
-//! Half-wave symmetry (every `p + q` odd: odd harmonics alone) and that under reversal of time, where `y_n` consists of cosines (every `q`
-//! even) or of cosines for even `n` and of sines for odd `n` (every `q` as even as the order of its term). An equation without the
-//! second is left to the ring's own recursion.
+//! Half-wave symmetry (every `p + q` odd: odd harmonics alone) and that under reversal of time,
+//! where `y_n` consists of cosines (every `q` even) or of cosines for even `n` and of sines for odd
+//! `n` (every `q` as even as the order of its term). An equation without the second is left to the
+//! ring's own recursion.
 
 use std::ops::Range;
 
@@ -23,7 +25,8 @@ pub(super) struct Term {
     pub coefficient: Rational,
 }
 
-/// What is the same for every prime: the products, their symmetries and the points they are formed at.
+/// What is the same for every prime: the products, their symmetries and the points they are formed
+/// at.
 pub(super) struct Plan<'a> {
     pub terms: &'a [Term],
     pub scheme: Scheme,
@@ -51,9 +54,9 @@ pub(super) struct Plan<'a> {
 }
 
 impl<'a> Plan<'a> {
-    /// `None` for an equation without the symmetry under reversal of time, and for one without terms. With `frequency_alone`
-    /// nothing but the frequency is right in the image; `sine` is the rate of a [sine](super::sine) beside the terms, for a free
-    /// motion.
+    /// `None` for an equation without the symmetry under reversal of time, and for one without
+    /// terms. With `frequency_alone` nothing but the frequency is right in the image; `sine` is the
+    /// rate of a [sine](super::sine) beside the terms, for a free motion.
     pub fn new(
         terms: &'a [Term],
         sine: Option<Rational>,
@@ -62,20 +65,27 @@ impl<'a> Plan<'a> {
         frequency_alone: bool,
     ) -> Option<Self> {
         let conservative = terms.iter().all(|term| term.velocity % 2 == 0);
-        let alternating = terms.iter().all(|term| term.velocity as usize % 2 == term.order % 2);
-        if !(conservative || alternating) || terms.iter().any(|term| term.position + term.velocity == 0) {
+        let alternating = terms
+            .iter()
+            .all(|term| term.velocity as usize % 2 == term.order % 2);
+        if !(conservative || alternating)
+            || terms.iter().any(|term| term.position + term.velocity == 0)
+        {
             return None;
         }
         let power = |term: &Term| (term.position + term.velocity) as usize;
         let half_wave = terms.iter().all(|term| power(term) % 2 == 1);
-        let growths = terms.iter().map(|term| (power(term) - 1).div_ceil(term.order));
+        let growths = terms
+            .iter()
+            .map(|term| (power(term) - 1).div_ceil(term.order));
         let growth = growths.chain(sine.as_ref().map(|_| 2)).max()?;
         let determined = scheme.amplitude == Amplitude::Determined;
         let last = highest + usize::from(determined);
-        // The frequency of a limit cycle is the same however its motion is normalised, and without the sum over all harmonics
-        // that the initial value is, the high ones are not needed. That of a free motion belongs to one amplitude or the other.
-        let frequency_alone =
-            frequency_alone && (determined || scheme.normalisation == AmplitudeConvention::FirstHarmonic);
+        // The frequency of a limit cycle is the same however its motion is normalised, and without
+        // the sum over all harmonics that the initial value is, the high ones are not needed. That
+        // of a free motion belongs to one amplitude or the other.
+        let frequency_alone = frequency_alone
+            && (determined || scheme.normalisation == AmplitudeConvention::FirstHarmonic);
         let normalisation = match frequency_alone {
             true => AmplitudeConvention::FirstHarmonic,
             false => scheme.normalisation,
@@ -120,7 +130,10 @@ impl<'a> Plan<'a> {
             (position, 1) => (self.power(0, position + 1, needed), true),
             (0, velocity) => (self.power(1, velocity, needed), false),
             (position, velocity) => {
-                let (position, velocity) = (self.power(0, position, needed), self.power(1, velocity, needed));
+                let (position, velocity) = (
+                    self.power(0, position, needed),
+                    self.power(1, velocity, needed),
+                );
                 (self.product(position, velocity, needed), false)
             }
         }
@@ -132,7 +145,11 @@ impl<'a> Plan<'a> {
             return base;
         }
         let square = self.product(base, base, needed);
-        let start = if exponent.is_multiple_of(2) { square } else { base };
+        let start = if exponent.is_multiple_of(2) {
+            square
+        } else {
+            base
+        };
         (1..exponent.div_ceil(2)).fold(start, |power, _| self.product(power, square, needed))
     }
 
@@ -165,8 +182,9 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// How many harmonics of `y_order` are computed. An order changes a harmonic by no more than it reaches, so that what the
-    /// first harmonic of the last order depends on is below what is left to come.
+    /// How many harmonics of `y_order` are computed. An order changes a harmonic by no more than it
+    /// reaches, so that what the first harmonic of the last order depends on is below what is left
+    /// to come.
     pub fn harmonics(&self, order: usize) -> usize {
         match self.frequency_alone {
             true => self.reach(order).min(self.reach(self.last - order) + 1),
@@ -179,8 +197,8 @@ impl<'a> Plan<'a> {
         self.starts[order]..self.starts[order] + self.harmonics(order)
     }
 
-    /// How many points tell the harmonics apart: with `K` of them, a product's index `j` is taken for `2K - 1 - j` (`2K - j` where
-    /// all harmonics stand), which must be none that is computed.
+    /// How many points tell the harmonics apart: with `K` of them, a product's index `j` is taken
+    /// for `2K - 1 - j` (`2K - j` where all harmonics stand), which must be none that is computed.
     fn points(&self) -> usize {
         match self.frequency_alone {
             true => self.reach(self.last) / 2 + self.growth + 3,
@@ -218,14 +236,16 @@ impl<'a> Plan<'a> {
         self.grid.circle() as u64
     }
 
-    /// The largest divisor of the elimination at an order, `k^2 - 1`, has no prime factor above this.
+    /// The largest divisor of the elimination at an order, `k^2 - 1`, has no prime factor above
+    /// this.
     pub fn largest_factor(&self, order: usize) -> u64 {
         let highest = self.harmonic(self.reach(order) - 1) as u64 + 1;
         if self.half_wave { highest / 2 } else { highest }
     }
 
-    /// The same for the frequency: what comes back to the first harmonic was no further away than half of the orders reach, but for
-    /// the initial value of a free motion, which is a sum over all harmonics.
+    /// The same for the frequency: what comes back to the first harmonic was no further away than
+    /// half of the orders reach, but for the initial value of a free motion, which is a sum over
+    /// all harmonics.
     pub fn largest_factor_of_frequency(&self, order: usize) -> u64 {
         let free = self.scheme.amplitude == Amplitude::Free;
         match free && self.scheme.normalisation == AmplitudeConvention::Initial {
@@ -257,7 +277,8 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// Coefficients of harmonics: for each a row of the orders at which it is not zero, for each symmetry of its own, all in one memory.
+/// Coefficients of harmonics: for each a row of the orders at which it is not zero, for each
+/// symmetry of its own, all in one memory.
 pub(super) struct Harmonics<'m> {
     rows: [Vec<Row>; 2],
     entries: &'m mut [Lanes],
@@ -275,7 +296,11 @@ impl<'m> Harmonics<'m> {
     pub fn room(plan: &Plan, count: usize) -> usize {
         let parities = 0..plan.step();
         parities
-            .map(|parity| (0..count).map(|index| Self::orders(plan, index, parity)).sum::<usize>())
+            .map(|parity| {
+                (0..count)
+                    .map(|index| Self::orders(plan, index, parity))
+                    .sum::<usize>()
+            })
             .sum()
     }
 
@@ -304,7 +329,10 @@ impl<'m> Harmonics<'m> {
     }
 
     pub fn clear(&mut self) {
-        self.rows.iter_mut().flatten().for_each(|row| row.length = 0);
+        self.rows
+            .iter_mut()
+            .flatten()
+            .for_each(|row| row.length = 0);
     }
 
     /// All that there is.
@@ -313,13 +341,19 @@ impl<'m> Harmonics<'m> {
     }
 
     fn parity(&self, order: usize) -> usize {
-        if self.rows[1].is_empty() { 0 } else { order % 2 }
+        if self.rows[1].is_empty() {
+            0
+        } else {
+            order % 2
+        }
     }
 
     /// The coefficients of the next order.
     pub fn push(&mut self, plan: &Plan, order: usize, coefficients: &[Lanes]) {
         let parity = self.parity(order);
-        for (index, (row, coefficient)) in self.rows[parity].iter_mut().zip(coefficients).enumerate() {
+        for (index, (row, coefficient)) in
+            self.rows[parity].iter_mut().zip(coefficients).enumerate()
+        {
             if plan.first(index, order) <= order {
                 self.entries[row.begin + row.length] = *coefficient;
                 row.length += 1;
@@ -339,12 +373,18 @@ impl<'m> Harmonics<'m> {
     pub fn row(&self, plan: &Plan, index: usize, order: usize) -> (usize, &[Lanes]) {
         let parity = if plan.step() == 2 { order % 2 } else { 0 };
         let row = self.rows[parity][index];
-        (plan.first(index, order), &self.entries[row.begin..][..row.length])
+        (
+            plan.first(index, order),
+            &self.entries[row.begin..][..row.length],
+        )
     }
 
     pub fn at(&self, plan: &Plan, index: usize, order: usize) -> Lanes {
         let (first, row) = self.row(plan, index, order);
         let place = order.checked_sub(first).map(|after| after / plan.step());
-        place.and_then(|place| row.get(place)).copied().unwrap_or_default()
+        place
+            .and_then(|place| row.get(place))
+            .copied()
+            .unwrap_or_default()
     }
 }

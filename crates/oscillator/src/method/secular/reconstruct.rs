@@ -1,14 +1,18 @@
 //! An exact expansion put together from what many primes see of it.
 //!
-//! References: J. von zur Gathen and J. Gerhard, *Modern Computer Algebra*, Cambridge 2013, sections 5.4 (many small primes) and
-//! 5.10 (rational numbers).
+//! References: J. von zur Gathen and J. Gerhard, *Modern Computer Algebra*, Cambridge 2013,
+//! sections 5.4 (many small primes) and 5.10 (rational numbers).
 //!
-//! 1. A few primes give the first orders as fractions, and with them how the [denominators](super::denominators) grow.
-//! 2. The numerators over these denominators are whole numbers, and as many primes are run as they have digits.
-//! 3. Each numerator is [lifted](crate::exact::residue::remainder) and tried modulo one prime more, which its digits know nothing of.
+//! 1. A few primes give the first orders as fractions, and with them how the
+//!    [denominators](super::denominators) grow.
+//! 2. The numerators over these denominators are whole numbers, and as many primes are run as they
+//!    have digits.
+//! 3. Each numerator is [lifted](crate::exact::residue::remainder) and tried modulo one prime more,
+//!    which its digits know nothing of.
 //!
-//! A wrong number would have to agree with the right one modulo that prime by chance, once in 2^50 (2^30 on processors without
-//! wide multiply-add). Primes are independent, and run on all threads with one result.
+//! A wrong number would have to agree with the right one modulo that prime by chance, once in 2^50
+//! (2^30 on processors without wide multiply-add). Primes are independent, and run on all threads
+//! with one result.
 //!
 //! Memory: the residues of all coefficients, 8 bytes for each 50 binary digits of the result.
 
@@ -21,7 +25,9 @@ use super::orders::{Order, expansion};
 use super::plan::{Plan, Term};
 use super::{Amplitude, Expansion, ForceTerm, Scheme, fixed_width};
 use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
-use crate::exact::residue::{Arithmetic, Lanes, Memory, Modulus, WIDTH, Work, by_widest, primes_below};
+use crate::exact::residue::{
+    Arithmetic, Lanes, Memory, Modulus, WIDTH, Work, by_widest, primes_below,
+};
 use crate::exact::{Integer, Integers, Rational};
 use crate::interrupt::Supervision;
 use crate::parallel::{each, threads};
@@ -33,12 +39,14 @@ use crate::series::waves::Wave;
 pub enum Extent {
     /// Frequency and motion.
     Motion,
-    /// The frequency alone, with half the digits and a part of the harmonics; the lists of everything else are empty.
+    /// The frequency alone, with half the digits and a part of the harmonics; the lists of
+    /// everything else are empty.
     Frequency,
 }
 
-/// The expansion by words, or by many primes; `None` where the equation has no symmetry to use, where the denominators grow in no
-/// known way, where numbers are short, and where there is none: the ring's own recursion answers then.
+/// The expansion by words, or by many primes; `None` where the equation has no symmetry to use,
+/// where the denominators grow in no known way, where numbers are short, and where there is none:
+/// the ring's own recursion answers then.
 pub fn expand(
     force: &[ForceTerm<Integers>],
     highest: usize,
@@ -76,9 +84,16 @@ pub fn expand(
 }
 
 /// Where the amplitude is determined, its condition has the same slope at every order.
-fn slope(force: &[ForceTerm<Integers>], scheme: &Scheme, beginning: &fixed_width::Beginning) -> Option<Rational> {
+fn slope(
+    force: &[ForceTerm<Integers>],
+    scheme: &Scheme,
+    beginning: &fixed_width::Beginning,
+) -> Option<Rational> {
     if let Some(slope) = &beginning.slope {
-        return Some(Rational::new_raw(slope.numerator(0).into(), slope.denominator().into()));
+        return Some(Rational::new_raw(
+            slope.numerator(0).into(),
+            slope.denominator().into(),
+        ));
     }
     let first = super::expand(&Integers, force, 1, scheme).ok()?;
     let (numerator, denominator) = first.amplitudes.first()?.slope.mean();
@@ -126,7 +141,13 @@ impl Equation {
 
     fn plan(&self, highest: usize) -> Option<Plan<'_>> {
         let frequency_alone = self.extent == Extent::Frequency;
-        Plan::new(&self.terms, self.sine.clone(), highest, self.scheme, frequency_alone)
+        Plan::new(
+            &self.terms,
+            self.sine.clone(),
+            highest,
+            self.scheme,
+            frequency_alone,
+        )
     }
 }
 
@@ -158,13 +179,16 @@ impl Work for Expand<'_> {
             false => None,
         };
         // A guess about the denominators that turns out wrong costs little where the order is low.
-        let evident = beginning.as_ref().is_some_and(|beginning| beginning.is_power(plan));
+        let evident = beginning
+            .as_ref()
+            .is_some_and(|beginning| beginning.is_power(plan));
         let (beginning, mut orders) = match plan.highest > 2 * GUESSED && !evident {
             false => (beginning, short),
             true => {
                 let plan = equation.plan(GUESSED)?;
                 let mut orders = short;
-                let shorter = Reconstruction::new(arithmetic, &plan, extent, Supervision::default());
+                let shorter =
+                    Reconstruction::new(arithmetic, &plan, extent, Supervision::default());
                 orders.extend(shorter.orders_from(orders.len(), beginning)?);
                 (Some(Beginning::of(&orders)?), orders)
             }
@@ -224,7 +248,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             };
             let Some(motion) = motion else { continue };
             for growth in Growth::ALL {
-                let frequency = growth.denominators(&beginning.frequency.known, highest, &of_frequency);
+                let frequency =
+                    growth.denominators(&beginning.frequency.known, highest, &of_frequency);
                 let lifted = frequency.and_then(|frequency| {
                     let bits = beginning.bits(&motion, &frequency);
                     self.lifted(first, &motion, &frequency, &bits)
@@ -240,7 +265,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             .then(|| self.orders_from(first, Some(beginning.without_shrinking())))?
     }
 
-    /// The number of primes whose product has more than so many binary digits; `None` where there are not enough.
+    /// The number of primes whose product has more than so many binary digits; `None` where there
+    /// are not enough.
     fn primes_for(&mut self, bits: f64) -> Option<usize> {
         let mut product = 0.0;
         let mut count = 0;
@@ -254,17 +280,23 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         Some(count)
     }
 
-    /// Images of the primes from `self.first.len()` on, in eights, until there are `count`, each from the order on that it is wanted
-    /// for; fewer where the work is stopped.
-    fn images(&mut self, count: usize, wanted: &(dyn Fn(usize) -> usize + Sync)) -> Option<Vec<Image>> {
-        /// Eights of a lot use the same memory; after so many lots for each thread all threads meet, so that what is there when the
-        /// work is stopped has no gaps.
+    /// Images of the primes from `self.first.len()` on, in eights, until there are `count`, each
+    /// from the order on that it is wanted for; fewer where the work is stopped.
+    fn images(
+        &mut self,
+        count: usize,
+        wanted: &(dyn Fn(usize) -> usize + Sync),
+    ) -> Option<Vec<Image>> {
+        /// Eights of a lot use the same memory; after so many lots for each thread all threads
+        /// meet, so that what is there when the work is stopped has no gaps.
         const LOT: usize = 8;
         const LOTS: usize = 4;
         let begun = self.first.len();
         let end = begun + count.saturating_sub(begun).next_multiple_of(WIDTH);
         while self.primes.len() < end {
-            let Some(prime) = self.source.next() else { break };
+            let Some(prime) = self.source.next() else {
+                break;
+            };
             self.primes.push(prime);
         }
         let places: Vec<usize> = (begun..end.min(self.primes.len())).collect();
@@ -272,7 +304,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         let interrupt = this.supervision.interrupt;
         let lot = |places: &[usize]| -> Option<Vec<Image>> {
             let mut memory = Memory::zeroed(Recursion::<A>::room(this.plan));
-            let mut recursion = Recursion::new(this.arithmetic, this.plan, interrupt, memory.lanes());
+            let mut recursion =
+                Recursion::new(this.arithmetic, this.plan, interrupt, memory.lanes());
             let mut images = Vec::with_capacity(places.len());
             for eight in places.chunks(WIDTH) {
                 let primes = &this.primes[eight[0]..eight[0] + eight.len()];
@@ -293,7 +326,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             let mut images = Vec::with_capacity(places.len());
             for block in places.chunks(length * LOTS * threads) {
                 let lots: Vec<&[usize]> = block.chunks(length).collect();
-                let found: Option<Vec<Vec<Image>>> = each(&lots, |places| lot(places)).into_iter().collect();
+                let found: Option<Vec<Vec<Image>>> =
+                    each(&lots, |places| lot(places)).into_iter().collect();
                 for (own, places) in found?.into_iter().zip(lots) {
                     let whole = own.len() == places.len();
                     images.extend(own);
@@ -321,7 +355,11 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             if count > MOST_PRIMES {
                 return None;
             }
-            let from = if self.extent == Extent::Motion { 0 } else { usize::MAX };
+            let from = if self.extent == Extent::Motion {
+                0
+            } else {
+                usize::MAX
+            };
             let more = self.images(count, &|_| from)?;
             self.first.extend(more);
             if self.first.len() < count {
@@ -331,16 +369,22 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             let images = &self.first[..count];
             let moduli: Vec<Modulus> = images.iter().map(|image| image.modulus).collect();
             let remainders = Remainders::new(self.arithmetic, &moduli);
-            let product: Integer = moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
-            let known =
-                |count, number: &dyn Fn(&Image, usize) -> u64| known(images, count, &remainders, &product, number);
+            let product: Integer = moduli
+                .iter()
+                .map(|modulus| Integer::from(modulus.prime))
+                .product();
+            let known = |count, number: &dyn Fn(&Image, usize) -> u64| {
+                known(images, count, &remainders, &product, number)
+            };
             while beginning.frequency.known.len() <= last {
                 let order = beginning.frequency.known.len();
                 let count = match self.extent {
                     Extent::Motion => self.plan.harmonics(order),
                     Extent::Frequency => 0,
                 };
-                let motion = known(count, &|image, index| image.displacement(self.plan, order)[index]);
+                let motion = known(count, &|image, index| {
+                    image.displacement(self.plan, order)[index]
+                });
                 let frequency = known(2, &|image, index| match index {
                     0 => image.frequency[order],
                     _ => image.frequency_squared[order],
@@ -355,8 +399,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         Some(beginning)
     }
 
-    /// The orders from `first` on over these denominators of motion and frequency, with numerators of so many binary digits; `None` where a number fails the test of the extra
-    /// prime.
+    /// The orders from `first` on over these denominators of motion and frequency, with numerators
+    /// of so many binary digits; `None` where a number fails the test of the extra prime.
     fn lifted(
         &mut self,
         first: usize,
@@ -370,7 +414,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         for bits in bits {
             counts.push(self.primes_for(*bits)?);
         }
-        // Orders share the primes of the longest among their neighbours: what a set of primes needs is computed once.
+        // Orders share the primes of the longest among their neighbours: what a set of primes needs
+        // is computed once.
         let longest = counts.iter().copied().max()?;
         let mut least = 1;
         for count in &mut counts {
@@ -380,7 +425,9 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         }
         if self.extent == Extent::Motion {
             let orders = counts.iter().enumerate();
-            let kept: usize = orders.map(|(order, count)| self.plan.harmonics(order) * count).sum();
+            let kept: usize = orders
+                .map(|(order, count)| self.plan.harmonics(order) * count)
+                .sum();
             if kept > MOST_RESIDUES {
                 return None;
             }
@@ -410,7 +457,11 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             }
         }
         let group = |(count, orders): &(usize, std::ops::Range<usize>)| {
-            Lift::new(self.arithmetic, self.plan, &all[..=*count]).orders(orders.clone(), motion, frequency)
+            Lift::new(self.arithmetic, self.plan, &all[..=*count]).orders(
+                orders.clone(),
+                motion,
+                frequency,
+            )
         };
         let lifted: Option<Vec<Vec<Order>>> = match self.plan.highest > ALONE {
             true => each(&groups, group).into_iter().collect(),
@@ -420,8 +471,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
     }
 }
 
-/// The common denominator of so many numbers and the digits that the largest has before the point; `None` where the primes
-/// are too few.
+/// The common denominator of so many numbers and the digits that the largest has before the point;
+/// `None` where the primes are too few.
 fn known<A: Arithmetic>(
     images: &[Image],
     count: usize,
@@ -454,7 +505,8 @@ struct Beginning {
 }
 
 impl Beginning {
-    /// The binary digits of the numerators of all orders over these denominators, and room for the factor before the growth.
+    /// The binary digits of the numerators of all orders over these denominators, and room for the
+    /// factor before the growth.
     fn bits(&self, motion: &[Factored], frequency: &[Factored]) -> Vec<f64> {
         const ROOM: f64 = 24.0;
         let orders = motion.iter().zip(frequency).enumerate();
@@ -492,14 +544,20 @@ impl Beginning {
     fn of(orders: &[Order]) -> Option<Self> {
         let mut beginning = Self::default();
         for order in orders {
-            let bits =
-                |numbers: &mut dyn Iterator<Item = &Integer>| numbers.map(Integer::bits).max().unwrap_or(0) as f64;
+            let bits = |numbers: &mut dyn Iterator<Item = &Integer>| {
+                numbers.map(Integer::bits).max().unwrap_or(0) as f64
+            };
             let size = bits(&mut order.displacement.iter()) - order.denominator.bits() as f64;
-            beginning.motion.push(Factored::of(&order.denominator)?, size);
+            beginning
+                .motion
+                .push(Factored::of(&order.denominator)?, size);
             let both = [&order.frequency, &order.frequency_squared];
             let denominator = Factored::of(&both[0].denom().lcm(both[1].denom()))?;
-            let sizes = both.map(|number| number.numer().bits() as f64 - number.denom().bits() as f64);
-            beginning.frequency.push(denominator, sizes[0].max(sizes[1]));
+            let sizes =
+                both.map(|number| number.numer().bits() as f64 - number.denom().bits() as f64);
+            beginning
+                .frequency
+                .push(denominator, sizes[0].max(sizes[1]));
         }
         Some(beginning)
     }
@@ -529,7 +587,8 @@ impl Guess {
         self.growth = self.growth.max(size / order.max(1) as f64);
         self.known.push(denominator);
         self.sizes.push(size);
-        // Of the second half of what is known; what is no more than a power of the order is not counted.
+        // Of the second half of what is known; what is no more than a power of the order is not
+        // counted.
         let middle = order / 2;
         let slope = (size - self.sizes[middle]) / (order - middle).max(1) as f64;
         self.decay = if order >= Self::ENOUGH {
@@ -542,11 +601,14 @@ impl Guess {
     /// Below so many orders nothing is said of shrinking.
     const ENOUGH: usize = 8;
 
-    /// The binary digits before the point of the largest number of an order, at most; negative where it is small.
+    /// The binary digits before the point of the largest number of an order, at most; negative
+    /// where it is small.
     fn size(&self, order: usize) -> f64 {
         let last = self.sizes.len().saturating_sub(1);
         match self.sizes.last() {
-            Some(size) if self.decay < 0.0 && order >= last => size + self.decay * (order - last) as f64,
+            Some(size) if self.decay < 0.0 && order >= last => {
+                size + self.decay * (order - last) as f64
+            }
             _ => self.growth * order as f64,
         }
     }
@@ -590,7 +652,8 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
         motion: &[Factored],
         frequency: &[Factored],
     ) -> Option<Vec<Order>> {
-        // What the guessed denominators had too much of in the order before they mostly have in the next as well.
+        // What the guessed denominators had too much of in the order before they mostly have in the
+        // next as well.
         let mut excess = Factored::default();
         let (mut of_motion, mut of_frequency) = (None, None);
         let mut lifted = Vec::with_capacity(orders.len());
@@ -607,7 +670,9 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
             let common = denominator.common(&displacement);
             if !common.is_one() {
                 let divisor = common.value();
-                displacement.iter_mut().for_each(|numerator| *numerator /= &divisor);
+                displacement
+                    .iter_mut()
+                    .for_each(|numerator| *numerator /= &divisor);
                 excess = excess.times(&common);
             }
             let whole = &frequency[order];
@@ -622,7 +687,9 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
             let [frequency, frequency_squared] = constants.collect::<Vec<_>>().try_into().ok()?;
             let denominator = denominator.over(&common);
             let first = match (self.plan.scheme.amplitude, self.plan.wave(order)) {
-                (Amplitude::Determined, Wave::Cosine) => displacement.get(self.plan.resonant()).cloned(),
+                (Amplitude::Determined, Wave::Cosine) => {
+                    displacement.get(self.plan.resonant()).cloned()
+                }
                 _ => None,
             };
             let (numerator, over_first) = denominator.lowest_terms(first.unwrap_or_default());
@@ -641,8 +708,15 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
     fn displacement(&self, order: usize, over: &Over) -> Option<Vec<Integer>> {
         let count = self.test.displacement(self.plan, order).len();
         self.numbers(over, count, |image, block, lanes| {
-            let own = image.displacement(self.plan, order).iter().skip(block * WIDTH);
-            lanes.0.iter_mut().zip(own).for_each(|(lane, residue)| *lane = *residue);
+            let own = image
+                .displacement(self.plan, order)
+                .iter()
+                .skip(block * WIDTH);
+            lanes
+                .0
+                .iter_mut()
+                .zip(own)
+                .for_each(|(lane, residue)| *lane = *residue);
         })
     }
 
@@ -652,7 +726,9 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
             Some(mut last) => {
                 let ratio = denominator.over(&last.denominator).ladder();
                 for (weight, image) in last.weights.iter_mut().zip(self.images) {
-                    *weight = image.modulus.product(*weight, ratio.residue(&image.modulus));
+                    *weight = image
+                        .modulus
+                        .product(*weight, ratio.residue(&image.modulus));
                 }
                 let test = &self.test.modulus;
                 Over {
@@ -665,15 +741,24 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
                 let ladder = denominator.ladder();
                 Over {
                     denominator: denominator.clone(),
-                    weights: self.remainders.weights(|modulus| ladder.residue(modulus)).collect(),
+                    weights: self
+                        .remainders
+                        .weights(|modulus| ladder.residue(modulus))
+                        .collect(),
                     in_test: ladder.residue(&self.test.modulus),
                 }
             }
         }
     }
 
-    /// The numerators of so many numbers over a denominator; `eight` writes a block of their residues.
-    fn numbers(&self, over: &Over, count: usize, eight: impl Fn(&Image, usize, &mut Lanes)) -> Option<Vec<Integer>> {
+    /// The numerators of so many numbers over a denominator; `eight` writes a block of their
+    /// residues.
+    fn numbers(
+        &self,
+        over: &Over,
+        count: usize,
+        eight: impl Fn(&Image, usize, &mut Lanes),
+    ) -> Option<Vec<Integer>> {
         let modulus = &self.test.modulus;
         let mut numerators = Vec::with_capacity(count);
         let mut residues = vec![Lanes::default(); self.images.len()];
@@ -682,7 +767,8 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
             for (own, image) in residues.iter_mut().zip(self.images) {
                 eight(image, block, own);
             }
-            self.remainders.lift(&mut residues, &over.weights, &mut numbers);
+            self.remainders
+                .lift(&mut residues, &over.weights, &mut numbers);
             let mut in_test = Lanes::default();
             eight(self.test, block, &mut in_test);
             let found = numbers.residues(self.arithmetic, modulus, &self.powers);
@@ -716,17 +802,28 @@ mod tests {
     use crate::series::FourierSeries;
     use crate::solution::AmplitudeConvention;
 
-    /// Every number of the expansion, its steps included, is that of the recursion over whole numbers.
+    /// Every number of the expansion, its steps included, is that of the recursion over whole
+    /// numbers.
     fn agrees(force: &[ForceTerm<Integers>], highest: usize, amplitude: Amplitude) {
-        for normalisation in [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic] {
+        for normalisation in [
+            AmplitudeConvention::Initial,
+            AmplitudeConvention::FirstHarmonic,
+        ] {
             for detuning in [Detuning::Acceleration, Detuning::Displacement] {
                 let scheme = Scheme {
                     normalisation,
                     amplitude,
                     detuning,
                 };
-                let exact = super::super::expand(&Integers, force, highest, &scheme).expect("an expansion");
-                let widest = super::expand(force, highest, &scheme, Extent::Motion, Supervision::default());
+                let exact =
+                    super::super::expand(&Integers, force, highest, &scheme).expect("an expansion");
+                let widest = super::expand(
+                    force,
+                    highest,
+                    &scheme,
+                    Extent::Motion,
+                    Supervision::default(),
+                );
                 let widest = widest.unwrap_or_else(|| panic!("{force:?} {scheme:?}"));
                 let equation = Equation::new(force, highest, scheme, Extent::Motion);
                 let by_primes = Expand {
@@ -737,17 +834,28 @@ mod tests {
                     supervision: Supervision::default(),
                 };
                 let portable = by_primes.by(Portable).expect("the same by primes");
-                let alone = super::expand(force, highest, &scheme, Extent::Frequency, Supervision::default());
+                let alone = super::expand(
+                    force,
+                    highest,
+                    &scheme,
+                    Extent::Frequency,
+                    Supervision::default(),
+                );
                 let alone = alone.unwrap_or_else(|| panic!("{force:?} {scheme:?}"));
-                assert_eq!(alone.frequency_squared, exact.frequency_squared, "{scheme:?}");
+                assert_eq!(
+                    alone.frequency_squared, exact.frequency_squared,
+                    "{scheme:?}"
+                );
                 assert_eq!(alone.frequency, exact.frequency);
                 assert!(alone.displacement.is_empty());
                 for found in [widest, portable] {
                     assert_same(&found, &exact);
                 }
                 for low in [1, 2, 5] {
-                    let exact = super::super::expand(&Integers, force, low, &scheme).expect("an expansion");
-                    let short = super::expand(force, low, &scheme, Extent::Motion, Supervision::default());
+                    let exact =
+                        super::super::expand(&Integers, force, low, &scheme).expect("an expansion");
+                    let short =
+                        super::expand(force, low, &scheme, Extent::Motion, Supervision::default());
                     assert_same(&short.expect("numbers of a fixed width"), &exact);
                 }
             }
@@ -770,16 +878,25 @@ mod tests {
     #[test]
     fn primes_agree_with_whole_numbers() {
         let free = Amplitude::Free;
-        // Duffing; a quadratic force, whose motions have all harmonics; several orders, x x'^2 among them; the pendulum.
+        // Duffing; a quadratic force, whose motions have all harmonics; several orders, x x'^2
+        // among them; the pendulum.
         agrees(&[term(1, 3, 0, (1, 1))], 24, free);
         agrees(&[term(1, 2, 0, (1, 1))], 13, free);
         agrees(
-            &[term(1, 3, 0, (2, 7)), term(1, 1, 2, (1, 2)), term(2, 5, 0, (-1, 3))],
+            &[
+                term(1, 3, 0, (2, 7)),
+                term(1, 1, 2, (1, 2)),
+                term(2, 5, 0, (-1, 3)),
+            ],
             13,
             free,
         );
         agrees(
-            &[term(1, 2, 0, (3, 1)), term(2, 3, 0, (1, 5)), term(3, 0, 2, (1, 1))],
+            &[
+                term(1, 2, 0, (3, 1)),
+                term(2, 3, 0, (1, 5)),
+                term(3, 0, 2, (1, 1)),
+            ],
             12,
             free,
         );
@@ -805,7 +922,11 @@ mod tests {
         agrees(&[term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1))], 16, cycle);
         agrees(&[term(1, 0, 3, (4, 3)), term(1, 0, 1, (-1, 1))], 13, cycle);
         agrees(
-            &[term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1)), term(2, 3, 0, (1, 3))],
+            &[
+                term(1, 2, 1, (4, 1)),
+                term(1, 0, 1, (-1, 1)),
+                term(2, 3, 0, (1, 3)),
+            ],
             12,
             cycle,
         );
@@ -819,7 +940,11 @@ mod tests {
             detuning: Detuning::Acceleration,
         };
         // A spring and damping at the same order: sines and cosines in every y_n.
-        let mixed = [term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1)), term(1, 3, 0, (1, 1))];
+        let mixed = [
+            term(1, 2, 1, (4, 1)),
+            term(1, 0, 1, (-1, 1)),
+            term(1, 3, 0, (1, 1)),
+        ];
         assert!(
             expand(
                 &mixed,

@@ -1,6 +1,7 @@
 //! The sine of the motion by its differential equation, where a force is the whole series of one.
 //!
-//! Reference: D. E. Knuth, *The Art of Computer Programming*, volume 2, 3rd ed. 1998, section 4.7 (functions of power series).
+//! Reference: D. E. Knuth, *The Art of Computer Programming*, volume 2, 3rd ed. 1998, section 4.7
+//! (functions of power series).
 //!
 //! ```text
 //! S = sin(sqrt(-k delta) y)/sqrt(-k delta) = y + k delta y^3/3! + k^2 delta^2 y^5/5! + ...,   C = cos(sqrt(-k delta) y)
@@ -172,7 +173,10 @@ mod tests {
         let mut terms: Vec<Term> = (1..=8)
             .map(|n| {
                 power *= &third;
-                term(n, &power / Rational::from_integer(factorial(2 * n as u32 + 1)))
+                term(
+                    n,
+                    &power / Rational::from_integer(factorial(2 * n as u32 + 1)),
+                )
             })
             .collect();
         terms.push(Term {

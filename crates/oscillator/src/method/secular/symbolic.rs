@@ -1,19 +1,23 @@
-//! An exact expansion whose coefficients contain symbols, from what primes see of it at many values of them.
+//! An exact expansion whose coefficients contain symbols, from what primes see of it at many values
+//! of them.
 //!
-//! References: J. von zur Gathen and J. Gerhard, *Modern Computer Algebra*, Cambridge 2013, section 5.5 (change of representation);
-//! N. Dyn and M. S. Floater, *Multivariate polynomial interpolation on lower sets*, J. Approx. Theory 177 (2014) 34-42.
+//! References: J. von zur Gathen and J. Gerhard, *Modern Computer Algebra*, Cambridge 2013,
+//! section 5.5 (change of representation); N. Dyn and M. S. Floater, *Multivariate polynomial interpolation
+//! on lower sets*, J. Approx. Theory 177 (2014) 34-42.
 //!
 //! ```text
 //! sum_t c_t delta^(a_t) y^(p_t) (omega y')^(q_t):   order n = sum K_e prod c_t^(e_t)   over all e with sum a_t e_t = n
 //! c_1 = 1 for a term with a_1 = 1:  the others, u, have sum a_t e_t <= n, a lower set, and K_e follow from values at u_t = e_t
 //! ```
 //!
-//! Terms with the same power of the small parameter and the same symbols share one `u`. At each point the recursion is that over
-//! [residues](super::modular); the fractions are found by the remainders of a few primes, and tried modulo one prime more.
+//! Terms with the same power of the small parameter and the same symbols share one `u`. At each
+//! point the recursion is that over [residues](super::modular); the fractions are found by the
+//! remainders of a few primes, and tried modulo one prime more.
 //!
-//! Cost: for `P` points in the lower set of the highest order, `P` runs of the recursion for each prime, where products of
-//! polynomials would take `P^2` products of coefficients each. The points are independent, and run on all threads with one result;
-//! those of the lowest orders come first, so that what is there when the work is stopped is all that the lower orders need.
+//! Cost: for `P` points in the lower set of the highest order, `P` runs of the recursion for each
+//! prime, where products of polynomials would take `P^2` products of coefficients each. The points
+//! are independent, and run on all threads with one result; those of the lowest orders come first,
+//! so that what is there when the work is stopped is all that the lower orders need.
 //!
 //! Memory: the residues of all coefficients, 8 bytes for each prime, at most half a gigabyte.
 
@@ -25,7 +29,9 @@ use super::modular::{Field, Recursion};
 use super::plan::{Plan, Term};
 use super::{Amplitude, Expansion, Extent, ForceTerm, Scheme};
 use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
-use crate::exact::residue::{Arithmetic, Lanes, Memory, Modulus, WIDTH, Work, by_widest, primes_below};
+use crate::exact::residue::{
+    Arithmetic, Lanes, Memory, Modulus, WIDTH, Work, by_widest, primes_below,
+};
 use crate::exact::{Integer, Integers, Monomial, Polynomial, Polynomials, Rational};
 use crate::interrupt::Supervision;
 use crate::parallel::{each, threads};
@@ -37,9 +43,10 @@ type Symbols = Polynomials<Integers>;
 /// Up to so many points times orders one thread is done before others have begun.
 const ALONE: usize = 200;
 
-/// The expansion, to the order that it has reached where it is stopped; `None` where the equation has no symmetry to use, no term of
-/// the first order, an amplitude that is determined, or too many symbols, and where it is stopped before any order is there: the
-/// ring's own recursion answers then.
+/// The expansion, to the order that it has reached where it is stopped; `None` where the equation
+/// has no symmetry to use, no term of the first order, an amplitude that is determined, or too many
+/// symbols, and where it is stopped before any order is there: the ring's own recursion answers
+/// then.
 pub(super) fn expand(
     force: &[ForceTerm<Symbols>],
     highest: usize,
@@ -67,8 +74,10 @@ impl Work for Expand<'_> {
         let (terms, groups) = grouped(force)?;
         let base = groups.kinds.iter().position(|kind| kind.0 == 1)?;
         let weights: Vec<usize> = groups.kinds.iter().map(|kind| kind.0).collect();
-        // Half of the orders cost a thirtieth: they are there where the work is stopped on the way to all.
-        let halves = std::iter::successors(Some(highest), |order| (*order > SHORT).then_some(order / 2));
+        // Half of the orders cost a thirtieth: they are there where the work is stopped on the way
+        // to all.
+        let halves =
+            std::iter::successors(Some(highest), |order| (*order > SHORT).then_some(order / 2));
         let stages: Vec<usize> = halves.collect();
         let lower_set = |highest: usize| LowerSet::new(&weights, base, highest, MOST_POINTS);
         lower_set(highest)?;
@@ -87,7 +96,10 @@ impl Work for Expand<'_> {
                 images: vec![],
             };
             let orders = search.orders()?;
-            if best.as_ref().is_none_or(|best| best.frequency.len() < orders.len()) {
+            if best
+                .as_ref()
+                .is_none_or(|best| best.frequency.len() < orders.len())
+            {
                 let monomials = lower_set.monomials(&groups.kinds, base);
                 best = Some(expansion(&plan, &orders, &monomials, extent));
             }
@@ -141,7 +153,8 @@ struct LowerSet {
     points: Vec<Vec<usize>>,
     /// How many points belong to each order.
     counts: Vec<usize>,
-    /// For each group the places of all points along a line in its direction, from exponent zero on.
+    /// For each group the places of all points along a line in its direction, from exponent zero
+    /// on.
     lines: Vec<Vec<Vec<usize>>>,
 }
 
@@ -149,7 +162,11 @@ impl LowerSet {
     fn new(weights: &[usize], base: usize, highest: usize, most: usize) -> Option<Self> {
         let mut of_weight: Vec<Vec<Vec<usize>>> = vec![vec![]; highest + 1];
         of_weight[0].push(vec![0; weights.len()]);
-        for (group, weight) in weights.iter().enumerate().filter(|(group, _)| *group != base) {
+        for (group, weight) in weights
+            .iter()
+            .enumerate()
+            .filter(|(group, _)| *group != base)
+        {
             for total in *weight..=highest {
                 let more: Vec<Vec<usize>> = of_weight[total - weight]
                     .iter()
@@ -190,26 +207,41 @@ impl LowerSet {
         };
         let lines = (0..weights.len())
             .map(|group| {
-                let starts = points.iter().filter(|point| point[group] == 0 && group != base);
+                let starts = points
+                    .iter()
+                    .filter(|point| point[group] == 0 && group != base);
                 starts.map(|start| line(start, group)).collect()
             })
             .collect();
-        Some(Self { points, counts, lines })
+        Some(Self {
+            points,
+            counts,
+            lines,
+        })
     }
 
-    /// From values at the points of an order, `numbers` side by side at each, to coefficients, in place. `inverses` are those of
-    /// `1, 2, ...`.
-    fn interpolate(&self, modulus: &Modulus, inverses: &[u64], order: usize, values: &mut [u64], numbers: usize) {
+    /// From values at the points of an order, `numbers` side by side at each, to coefficients, in
+    /// place. `inverses` are those of `1, 2, ...`.
+    fn interpolate(
+        &self,
+        modulus: &Modulus,
+        inverses: &[u64],
+        order: usize,
+        values: &mut [u64],
+        numbers: usize,
+    ) {
         let count = self.counts[order];
         // Points beyond the order are the last ones of a line.
         let within = |line: &Vec<usize>| line.partition_point(|place| *place < count);
-        // Divided differences at 0, 1, 2, ... in all directions first: only Newton's form has no terms beyond the lower set.
+        // Divided differences at 0, 1, 2, ... in all directions first: only Newton's form has no
+        // terms beyond the lower set.
         for line in self.lines.iter().flatten() {
             let line = &line[..within(line)];
             for (step, inverse) in inverses.iter().enumerate().take(line.len()).skip(1) {
                 for i in (step..line.len()).rev() {
                     for number in 0..numbers {
-                        let (upper, lower) = (line[i] * numbers + number, line[i - 1] * numbers + number);
+                        let (upper, lower) =
+                            (line[i] * numbers + number, line[i - 1] * numbers + number);
                         let difference = modulus.difference(values[upper], values[lower]);
                         values[upper] = modulus.product(difference, *inverse);
                     }
@@ -222,7 +254,8 @@ impl LowerSet {
                 let residue = modulus.small(node as i64);
                 for i in node..line.len() - 1 {
                     for number in 0..numbers {
-                        let product = modulus.product(residue, values[line[i + 1] * numbers + number]);
+                        let product =
+                            modulus.product(residue, values[line[i + 1] * numbers + number]);
                         let lower = &mut values[line[i] * numbers + number];
                         *lower = modulus.difference(*lower, product);
                     }
@@ -231,9 +264,13 @@ impl LowerSet {
         }
     }
 
-    /// The symbols that belong to each point but for those of the group whose value is one, and the weight of the point; and that
-    /// group's.
-    fn monomials(&self, kinds: &[(usize, Monomial)], base: usize) -> (Vec<(Monomial, usize)>, Monomial) {
+    /// The symbols that belong to each point but for those of the group whose value is one, and the
+    /// weight of the point; and that group's.
+    fn monomials(
+        &self,
+        kinds: &[(usize, Monomial)],
+        base: usize,
+    ) -> (Vec<(Monomial, usize)>, Monomial) {
         let of_point = |point: &Vec<usize>| {
             let parts = point.iter().zip(kinds);
             parts.fold(
@@ -244,12 +281,16 @@ impl LowerSet {
                 },
             )
         };
-        (self.points.iter().map(of_point).collect(), kinds[base].1.clone())
+        (
+            self.points.iter().map(of_point).collect(),
+            kinds[base].1.clone(),
+        )
     }
 }
 
-/// What one prime sees of all orders, or of the lower ones where it was stopped: for each the plain residues of the coefficients,
-/// point by point; of the frequency, of its square, and of the harmonics where they are wanted.
+/// What one prime sees of all orders, or of the lower ones where it was stopped: for each the plain
+/// residues of the coefficients, point by point; of the frequency, of its square, and of the
+/// harmonics where they are wanted.
 struct Image {
     modulus: Modulus,
     orders: Vec<Vec<u64>>,
@@ -286,12 +327,19 @@ impl<A: Arithmetic> Search<'_, A> {
     fn values(&self, modulus: Modulus, points: &[Vec<usize>]) -> Option<Vec<Vec<u64>>> {
         let mut field = Field::new(self.arithmetic, self.plan, &[modulus])?;
         let mut memory = Memory::zeroed(Recursion::<A>::room(self.plan));
-        let mut recursion = Recursion::new(self.arithmetic, self.plan, self.supervision.interrupt, memory.lanes());
+        let mut recursion = Recursion::new(
+            self.arithmetic,
+            self.plan,
+            self.supervision.interrupt,
+            memory.lanes(),
+        );
         let own = std::mem::take(&mut field.coefficients);
         let mut coefficients = own.clone();
         let mut found = Vec::with_capacity(points.len());
         for eight in points.chunks(WIDTH) {
-            for ((coefficient, own), group) in coefficients.iter_mut().zip(&own).zip(&self.groups.of_terms) {
+            for ((coefficient, own), group) in
+                coefficients.iter_mut().zip(&own).zip(&self.groups.of_terms)
+            {
                 if !self.lower_set.lines[*group].is_empty() {
                     for ((lane, own), point) in coefficient.0.iter_mut().zip(own.0).zip(eight) {
                         *lane = modulus.product(own, modulus.small(point[*group] as i64));
@@ -324,13 +372,17 @@ impl<A: Arithmetic> Search<'_, A> {
         Some(found)
     }
 
-    /// The numbers at all points, in their order; where the work is stopped, at as many of the first ones as there are.
+    /// The numbers at all points, in their order; where the work is stopped, at as many of the
+    /// first ones as there are.
     fn values_at_points(&self, modulus: Modulus) -> Option<Vec<Vec<u64>>> {
         let points = &self.lower_set.points;
         if points.len() * self.plan.highest > ALONE {
             /// So many lots for each thread let none of them wait for long.
             const LOTS: usize = 4;
-            let length = points.len().div_ceil(LOTS * threads()).next_multiple_of(WIDTH);
+            let length = points
+                .len()
+                .div_ceil(LOTS * threads())
+                .next_multiple_of(WIDTH);
             let lots: Vec<_> = points.chunks(length).collect();
             let found = each(&lots, |points| self.values(modulus, points));
             let found: Option<Vec<Vec<Vec<u64>>>> = found.into_iter().collect();
@@ -372,19 +424,23 @@ impl<A: Arithmetic> Search<'_, A> {
             }
             self.lower_set
                 .interpolate(&modulus, &inverses, order, &mut values, numbers);
-            values.iter_mut().for_each(|value| *value = modulus.plain(*value));
+            values
+                .iter_mut()
+                .for_each(|value| *value = modulus.plain(*value));
             orders.push(values);
         }
         Some(Image { modulus, orders })
     }
 
-    /// All orders, by as many primes as their fractions need; those for which there are enough where the work is stopped.
+    /// All orders, by as many primes as their fractions need; those for which there are enough
+    /// where the work is stopped.
     fn orders(&mut self) -> Option<Vec<Order>> {
         /// Residues kept at once, half a gigabyte of them.
         const MOST_RESIDUES: usize = 1 << 26;
         let plan = self.plan;
         let mut orders = Vec::with_capacity(plan.highest + 1);
-        let residues = (0..=plan.highest).map(|order| self.lower_set.counts[order] * self.numbers(order));
+        let residues =
+            (0..=plan.highest).map(|order| self.lower_set.counts[order] * self.numbers(order));
         let most = MOST_RESIDUES / residues.sum::<usize>().max(1);
         let mut count = 2;
         let mut stopped = false;
@@ -407,7 +463,10 @@ impl<A: Arithmetic> Search<'_, A> {
                 break;
             }
             let remainders = Remainders::new(self.arithmetic, &moduli);
-            let product: Integer = moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
+            let product: Integer = moduli
+                .iter()
+                .map(|modulus| Integer::from(modulus.prime))
+                .product();
             while let Some(in_test) = test.orders.get(orders.len()) {
                 let order = orders.len();
                 let Some(found) = fractions(images, &remainders, &product, order) else {
@@ -579,25 +638,31 @@ mod tests {
             order,
             position,
             velocity,
-            coefficient: FourierSeries::constant(Polynomials(Integers), numerator).over(&Integer::from(denominator)),
+            coefficient: FourierSeries::constant(Polynomials(Integers), numerator)
+                .over(&Integer::from(denominator)),
         }
     }
 
     /// Every number of the expansion is that of the recursion over polynomials.
     fn agrees(force: &[ForceTerm<Symbols>], highest: usize) {
-        for normalisation in [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic] {
+        for normalisation in [
+            AmplitudeConvention::Initial,
+            AmplitudeConvention::FirstHarmonic,
+        ] {
             for detuning in [Detuning::Acceleration, Detuning::Displacement] {
                 let scheme = Scheme {
                     normalisation,
                     amplitude: Amplitude::Free,
                     detuning,
                 };
-                let exact =
-                    super::super::expand(&Polynomials(Integers), force, highest, &scheme).expect("an expansion");
+                let exact = super::super::expand(&Polynomials(Integers), force, highest, &scheme)
+                    .expect("an expansion");
                 let nobody = Supervision::default();
-                let widest = expand(force, highest, &scheme, Extent::Motion, nobody).expect("the same by primes");
+                let widest = expand(force, highest, &scheme, Extent::Motion, nobody)
+                    .expect("the same by primes");
                 let portable = Expand(force, highest, scheme, Extent::Motion, nobody).by(Portable);
-                let alone = expand(force, highest, &scheme, Extent::Frequency, nobody).expect("the frequency");
+                let alone = expand(force, highest, &scheme, Extent::Frequency, nobody)
+                    .expect("the frequency");
                 assert_eq!(alone.frequency_squared, exact.frequency_squared);
                 assert_eq!(alone.frequency, exact.frequency);
                 assert!(alone.displacement.is_empty());
@@ -637,7 +702,10 @@ mod tests {
         sum.accumulate(&b.product(&b));
         for highest in [1, 2, 3, 4] {
             agrees(
-                &[term(1, 3, 0, (sum.clone(), 1)), term(1, 5, 0, (b.clone(), 1))],
+                &[
+                    term(1, 3, 0, (sum.clone(), 1)),
+                    term(1, 5, 0, (b.clone(), 1)),
+                ],
                 highest,
             );
         }
@@ -658,9 +726,15 @@ mod tests {
                 .map(|point| coefficient(point) * power(at[1], point[1]) * power(at[2], point[2]))
                 .sum()
         };
-        let mut values: Vec<u64> = set.points.iter().map(|at| modulus.small(value(at))).collect();
+        let mut values: Vec<u64> = set
+            .points
+            .iter()
+            .map(|at| modulus.small(value(at)))
+            .collect();
         let mut inverses: Vec<u64> = (1..7).map(|k| modulus.small(k)).collect();
-        modulus.invert(&mut inverses).expect("no multiple of the prime");
+        modulus
+            .invert(&mut inverses)
+            .expect("no multiple of the prime");
         inverses.insert(0, 0);
         set.interpolate(&modulus, &inverses, 5, &mut values, 1);
         let expected: Vec<u64> = set
@@ -671,7 +745,8 @@ mod tests {
         assert_eq!(values, expected);
     }
 
-    /// What is there when the work is stopped, after any number of points, are the lower orders as they are.
+    /// What is there when the work is stopped, after any number of points, are the lower orders as
+    /// they are.
     #[test]
     fn the_first_points_are_enough_for_the_lower_orders() {
         let [a, b] = ["a", "b"].map(letter);
@@ -703,12 +778,20 @@ mod tests {
         let modulus = Modulus::new(prime, 32);
         let values = search.values_at_points(modulus).expect("numbers");
         let all = search.interpolated(modulus, &values).expect("all orders");
-        assert_eq!((values.len(), all.orders.len()), (lower_set.points.len(), 7));
+        assert_eq!(
+            (values.len(), all.orders.len()),
+            (lower_set.points.len(), 7)
+        );
         for count in 0..values.len() {
-            let some = search.interpolated(modulus, &values[..count]).expect("some orders");
+            let some = search
+                .interpolated(modulus, &values[..count])
+                .expect("some orders");
             let reached = some.orders.len();
             assert_eq!(some.orders, all.orders[..reached]);
-            assert!(lower_set.counts[reached] > count, "{count} points are enough for more");
+            assert!(
+                lower_set.counts[reached] > count,
+                "{count} points are enough for more"
+            );
         }
     }
 
@@ -719,9 +802,15 @@ mod tests {
             amplitude: Amplitude::Free,
             detuning: Detuning::Acceleration,
         };
-        let terms = [term(2, 3, 0, (letter("a"), 1)), term(3, 5, 0, (letter("b"), 1))];
+        let terms = [
+            term(2, 3, 0, (letter("a"), 1)),
+            term(3, 5, 0, (letter("b"), 1)),
+        ];
         assert!(expand(&terms, 6, &scheme, Extent::Motion, Supervision::default()).is_none());
-        let damped = [term(1, 0, 1, (letter("a"), 1)), term(1, 3, 0, (letter("b"), 1))];
+        let damped = [
+            term(1, 0, 1, (letter("a"), 1)),
+            term(1, 3, 0, (letter("b"), 1)),
+        ];
         assert!(expand(&damped, 6, &scheme, Extent::Motion, Supervision::default()).is_none());
     }
 }

@@ -1,8 +1,9 @@
 //! Exact approximants: modulo primes of one word, then put together.
 //!
-//! Modulo a prime the recursion is a matter of words. The coefficients of the result are fractions over one denominator, whose
-//! digits are as many as those of all coefficients of the series together allow, mostly far fewer: primes are added until one entry
-//! shows itself as a fraction and all others, over its denominator, agree with a prime that they were not made from.
+//! Modulo a prime the recursion is a matter of words. The coefficients of the result are fractions
+//! over one denominator, whose digits are as many as those of all coefficients of the series
+//! together allow, mostly far fewer: primes are added until one entry shows itself as a fraction
+//! and all others, over its denominator, agree with a prime that they were not made from.
 
 use num_integer::Integer as _;
 use num_traits::{One, Signed, Zero};
@@ -13,9 +14,10 @@ use crate::exact::residue::{Arithmetic, Lanes, Modulus, WIDTH, Work, by_widest, 
 use crate::exact::{Integer, Rational};
 use crate::parallel::each;
 
-/// The combination of these series, each with the degree of its factor, that vanishes to the highest order: whole numbers without a
-/// common factor, a list for each series, the lowest power first. `None` where there is none whose first number is not zero, or more
-/// than one, or one of more digits than anybody waits for.
+/// The combination of these series, each with the degree of its factor, that vanishes to the
+/// highest order: whole numbers without a common factor, a list for each series, the lowest power
+/// first. `None` where there is none whose first number is not zero, or more than one, or one of
+/// more digits than anybody waits for.
 pub fn exact(series: &[(Vec<Rational>, usize)]) -> Option<Vec<Vec<Integer>>> {
     by_widest(Exact(series))
 }
@@ -58,12 +60,17 @@ impl Exact<'_> {
     fn image(&self, modulus: Modulus) -> Option<Image> {
         let order = self.0.iter().map(|(_, degree)| degree + 1).sum::<usize>() - 1;
         let residues = |numbers: &[Rational]| {
-            let mut inverses: Vec<u64> = numbers.iter().map(|number| modulus.integer(number.denom())).collect();
+            let mut inverses: Vec<u64> = numbers
+                .iter()
+                .map(|number| modulus.integer(number.denom()))
+                .collect();
             modulus.invert(&mut inverses)?;
             let pairs = numbers.iter().zip(inverses);
             Some(
                 pairs
-                    .map(|(number, inverse)| modulus.product(modulus.integer(number.numer()), inverse))
+                    .map(|(number, inverse)| {
+                        modulus.product(modulus.integer(number.numer()), inverse)
+                    })
                     .collect(),
             )
         };
@@ -112,7 +119,8 @@ impl Work for Exact<'_> {
             let mut blind = 0;
             while images.len() <= count {
                 let primes: Vec<u64> = source.by_ref().take(count + 1 - images.len()).collect();
-                let seen: Vec<Option<Image>> = each(&primes, |prime| self.image(Modulus::new(*prime, A::RADIX)));
+                let seen: Vec<Option<Image>> =
+                    each(&primes, |prime| self.image(Modulus::new(*prime, A::RADIX)));
                 blind += seen.iter().filter(|image| image.is_none()).count();
                 if seen.is_empty() || blind > BLIND + images.len() / 100 {
                     return None;
@@ -133,20 +141,27 @@ impl Work for Exact<'_> {
     }
 }
 
-/// All numbers over their common denominator, which is the first of them; `None` where the images, of which the last only tests, are
-/// too few.
+/// All numbers over their common denominator, which is the first of them; `None` where the images,
+/// of which the last only tests, are too few.
 fn lifted<A: Arithmetic>(arithmetic: A, images: &[Image]) -> Option<Vec<Integer>> {
     let (test, images) = images.split_last()?;
     let moduli: Vec<Modulus> = images.iter().map(|image| image.modulus).collect();
     let remainders = Remainders::new(arithmetic, &moduli);
-    let product: Integer = moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
+    let product: Integer = moduli
+        .iter()
+        .map(|modulus| Integer::from(modulus.prime))
+        .product();
     let digit = test.modulus.residue(1 << A::DIGIT);
     let digits = (images.len() + 1) * A::BITS as usize / A::DIGIT as usize + 2 + WIDTH;
     let next = |power: &u64| Some(test.modulus.product(*power, digit));
     let powers: Vec<u64> = std::iter::successors(Some(test.modulus.one), next)
         .take(digits)
         .collect();
-    let weights = |factor: &Integer| -> Vec<u64> { remainders.weights(|modulus| modulus.integer(factor)).collect() };
+    let weights = |factor: &Integer| -> Vec<u64> {
+        remainders
+            .weights(|modulus| modulus.integer(factor))
+            .collect()
+    };
     let length = test.numbers.len();
     // The numbers of the highest powers have the longest denominators.
     let mut denominator = Integer::one();
@@ -230,7 +245,8 @@ mod tests {
             }
             let mut one = vec![ratio(0, 1); series.len()];
             one[0] = ratio(-1, 1);
-            let found = exact(&[(series, below as usize), (one, above as usize)]).expect("approximants");
+            let found =
+                exact(&[(series, below as usize), (one, above as usize)]).expect("approximants");
             let mut expected = ratio(1, 1);
             for j in 0..=below {
                 let quotient = Rational::new(found[0][j as usize].clone(), found[0][0].clone());
@@ -256,7 +272,12 @@ mod tests {
         let square: Vec<Rational> = (0..root.len())
             .map(|n| (0..=n).map(|k| &root[k] * &root[n - k]).sum())
             .collect();
-        let whole = |numbers: &[i64]| numbers.iter().map(|number| Integer::from(*number)).collect::<Vec<_>>();
+        let whole = |numbers: &[i64]| {
+            numbers
+                .iter()
+                .map(|number| Integer::from(*number))
+                .collect::<Vec<_>>()
+        };
         let found = exact(&[(one, 1), (root, 0), (square, 0)]).expect("its equation");
         assert_eq!(found, [whole(&[1, 1]), whole(&[0]), whole(&[-1])]);
     }

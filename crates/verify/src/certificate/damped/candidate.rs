@@ -1,5 +1,5 @@
-//! The numbers of a certificate of a limit cycle or a driven motion: Newton's iteration from the true one in doubles. Nothing here is
-//! trusted.
+//! The numbers of a certificate of a limit cycle or a driven motion: Newton's iteration from the
+//! true one in doubles. Nothing here is trusted.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -8,8 +8,8 @@ use nalgebra::DMatrix;
 use num_traits::{Signed as _, Zero as _};
 
 use super::super::candidate::{
-    BITS, INVERSE_BITS, NOISE, NotCertified, blocks, claim_errors, claimed, few_units, inverted, iterate, judged,
-    not_proved, shorten, subtract, unclaimed, units, weight, written_out,
+    BITS, INVERSE_BITS, NOISE, NotCertified, blocks, claim_errors, claimed, few_units, inverted,
+    iterate, judged, not_proved, shorten, subtract, unclaimed, units, weight, written_out,
 };
 use super::super::force::{is_even, is_odd};
 use super::super::formula::JudgedFormula;
@@ -44,7 +44,8 @@ pub fn certify_cycle(
     certified_cycle(oscillator, solution, at, true)
 }
 
-/// A certificate of the limit cycle that a formula is about, without the formula: it may have no value there.
+/// A certificate of the limit cycle that a formula is about, without the formula: it may have no
+/// value there.
 ///
 /// # Errors
 /// [`NotCertified`].
@@ -69,7 +70,9 @@ fn certified_cycle(
     let samples = verify::true_motion(oscillator, solution, at)?;
     let (values, _) = at.split(&oscillator.parameters);
     let equilibrium = solution.equilibrium.substitute_all(&values)?;
-    let odd = equilibrium.is_zero() && is_odd(&force, &[coordinate()])? && is_even(&damping, &[coordinate()])?;
+    let odd = equilibrium.is_zero()
+        && is_odd(&force, &[coordinate()])?
+        && is_even(&damping, &[coordinate()])?;
     let (reciprocal, harmonics) = from_samples(&samples, odd);
     let seen = harmonics.cosines.len().max(harmonics.sines.len());
     if seen >= HIGHEST_HARMONIC {
@@ -98,13 +101,15 @@ fn certified_cycle(
         claim: Rational::zero(),
         formula,
     };
-    certificate.well_formed_formula().map_err(NotCertified::Formula)?;
+    certificate
+        .well_formed_formula()
+        .map_err(NotCertified::Formula)?;
     let certified = proved_by_some_block(&mut certificate, seen)?;
     Ok((certificate, certified))
 }
 
-/// A certificate of the steady motion that the verdict on a driven formula is about, the largest stable one, and what it proves of the
-/// formula.
+/// A certificate of the steady motion that the verdict on a driven formula is about, the largest
+/// stable one, and what it proves of the formula.
 ///
 /// # Errors
 /// [`NotCertified`].
@@ -127,10 +132,16 @@ pub fn certify_driven(
     solution: &Solution,
     at: &Values,
 ) -> Result<(DampedCertificate, Certified), NotCertified> {
-    let resonance = solution.modulation.as_ref().and_then(|slow| slow.resonance.as_ref());
+    let resonance = solution
+        .modulation
+        .as_ref()
+        .and_then(|slow| slow.resonance.as_ref());
     let resonance = resonance.ok_or(NotCertified::NoSteadyMotion)?;
     let (values, _) = at.split(&oscillator.parameters);
-    let given = resonance.driving_frequency.substitute_all(&values)?.expand()?;
+    let given = resonance
+        .driving_frequency
+        .substitute_all(&values)?
+        .expand()?;
     let frequency = given
         .as_number()
         .map(|number| number.abs())
@@ -138,8 +149,12 @@ pub fn certify_driven(
     let frequency = frequency.ok_or_else(|| NotCertified::DrivingFrequency(given.to_string()))?;
     let [damping, force] = driven_parts(oscillator, &values, &frequency)?;
     let samples = verify::motions(oscillator, solution, at)?.ok_or(NotCertified::NoSteadyMotion)?;
-    let places =
-        |samples: &[verify::Sample]| -> Vec<f64> { samples[..samples.len() - 1].iter().map(|(_, x, _)| *x).collect() };
+    let places = |samples: &[verify::Sample]| -> Vec<f64> {
+        samples[..samples.len() - 1]
+            .iter()
+            .map(|(_, x, _)| *x)
+            .collect()
+    };
     let truth = harmonics_of(&places(&samples.truth));
     let seen = truth.cosines.len().max(truth.sines.len());
     let drive = Drive {
@@ -182,7 +197,9 @@ pub fn certify_driven(
     certificate.odd = has_odd_alone(&truth) && certificate.is_odd()?;
     if certificate.odd {
         for list in [&mut certificate.cosines, &mut certificate.sines] {
-            list.iter_mut().step_by(2).for_each(|even| *even = Integer::zero());
+            list.iter_mut()
+                .step_by(2)
+                .for_each(|even| *even = Integer::zero());
         }
     }
     certificate.highest = (3 * seen / 2).clamp(15, most(certificate.odd)) | 1;
@@ -190,9 +207,15 @@ pub fn certify_driven(
     Ok((certificate, certified))
 }
 
-/// The formula of a driven motion, with these harmonics. Where its displacement, as text, is that of one of its steady motions, the harmonics are
-/// those of the text to their last digits.
-fn judged_driven(solution: &Solution, at: &Values, harmonics: &Harmonics, drive: &Drive, bits: usize) -> JudgedFormula {
+/// The formula of a driven motion, with these harmonics. Where its displacement, as text, is that
+/// of one of its steady motions, the harmonics are those of the text to their last digits.
+fn judged_driven(
+    solution: &Solution,
+    at: &Values,
+    harmonics: &Harmonics,
+    drive: &Drive,
+    bits: usize,
+) -> JudgedFormula {
     let mut judged = unclaimed([&harmonics.cosines, &harmonics.sines], bits);
     judged.law = solution.title();
     let (Some(response), Some(slow)) = (&solution.response, &solution.modulation) else {
@@ -231,14 +254,21 @@ fn is_near_all(exact: &FourierSeries, harmonics: &Harmonics) -> bool {
     let size = harmonics.cosines.iter().chain(&harmonics.sines);
     let size = size.fold(0.0_f64, |most, value| most.max(value.abs()));
     let near = |ball: &Ball, double: f64| (WORKING.nearest(ball) - double).abs() <= ROUNDING * size;
-    let last = exact.length().max(harmonics.cosines.len()).max(harmonics.sines.len());
-    (0..last)
-        .all(|k| near(&exact.cosine(k), own(&harmonics.cosines, k)) && near(&exact.sine(k), own(&harmonics.sines, k)))
+    let last = exact
+        .length()
+        .max(harmonics.cosines.len())
+        .max(harmonics.sines.len());
+    (0..last).all(|k| {
+        near(&exact.cosine(k), own(&harmonics.cosines, k))
+            && near(&exact.sine(k), own(&harmonics.sines, k))
+    })
 }
 
-/// The harmonics of samples of one period, the constant as it is, without those at the end that have no digits.
+/// The harmonics of samples of one period, the constant as it is, without those at the end that
+/// have no digits.
 fn harmonics_of(places: &[f64]) -> Harmonics {
-    let mut found = Transform::new(places.len()).harmonics(places, HIGHEST_HARMONIC.min(places.len() / 2));
+    let mut found =
+        Transform::new(places.len()).harmonics(places, HIGHEST_HARMONIC.min(places.len() / 2));
     // Of the constant twice the mean.
     found.cosines[0] /= 2.0;
     let largest = found.cosines.iter().chain(&found.sines);
@@ -292,7 +322,8 @@ pub(super) fn proved_by_some_block(
     certificate: &mut DampedCertificate,
     seen: usize,
 ) -> Result<Certified, NotCertified> {
-    refine(certificate).map_err(|reason| not_proved(reason, certificate.problem().block().len()))?;
+    refine(certificate)
+        .map_err(|reason| not_proved(reason, certificate.problem().block().len()))?;
     let mut reason = NotProved::NoContraction(Bound::UNKNOWN);
     let most = most(certificate.odd);
     for highest in blocks(seen).take_while(|highest| *highest <= most) {
@@ -314,8 +345,8 @@ const fn most(odd: bool) -> usize {
     }
 }
 
-/// Binary digits behind the point: fewer of a motion of more harmonics, for the number of harmonics and with its square the time grow with
-/// them.
+/// Binary digits behind the point: fewer of a motion of more harmonics, for the number of harmonics
+/// and with its square the time grow with them.
 fn digits(seen: usize) -> usize {
     /// A motion of so many harmonics in doubles has all digits.
     const MANY: usize = 120;
@@ -332,7 +363,14 @@ fn lienard(oscillator: &Oscillator, at: &Values) -> Result<[Expr; 2], NotCertifi
     }
     let velocity = oscillator.velocity();
     let mut terms = parts.damping.terms().to_vec();
-    terms.extend(parts.inertia.terms().iter().filter(|term| !term.is_zero()).cloned());
+    terms.extend(
+        parts
+            .inertia
+            .terms()
+            .iter()
+            .filter(|term| !term.is_zero())
+            .cloned(),
+    );
     for term in terms {
         if !is_linear_in(&term, velocity)? {
             return Err(NotCertified::NotLienard {
@@ -351,21 +389,27 @@ fn lienard(oscillator: &Oscillator, at: &Values) -> Result<[Expr; 2], NotCertifi
     Ok([in_numbers(damping)?, in_numbers(force)?])
 }
 
-/// Whether a term is a multiple of a letter, or free of it. The derivative alone does not say: that of `sgn` is zero.
+/// Whether a term is a multiple of a letter, or free of it. The derivative alone does not say: that
+/// of `sgn` is zero.
 fn is_linear_in(term: &Expr, letter: Symbol) -> Result<bool, ExprError> {
     let slope = term.differentiate(letter)?;
     let rest = (term - &(&slope * &Expr::from(letter))).expand()?;
     Ok(!slope.contains(letter) && !rest.contains(letter))
 }
 
-/// The equation of `v = x'`, `v'' + D'(v) v' + k v = 0` where that of x is `x'' + D(x') + k x = 0`, in the letter of x.
+/// The equation of `v = x'`, `v'' + D'(v) v' + k v = 0` where that of x is `x'' + D(x') + k x = 0`,
+/// in the letter of x.
 fn of_velocity(oscillator: &Oscillator, parts: &Parts) -> Option<String> {
     let (coordinate, velocity) = (oscillator.coordinate, oscillator.velocity());
     let stiffness = parts.restoring.differentiate(coordinate).ok()?;
     let lost = &parts.damping + &parts.inertia;
     let linear = !stiffness.contains(coordinate)
         && !lost.contains(coordinate)
-        && parts.restoring.substitute(coordinate, &Expr::zero()).ok()?.is_zero();
+        && parts
+            .restoring
+            .substitute(coordinate, &Expr::zero())
+            .ok()?
+            .is_zero();
     let slope = lost.differentiate(velocity).ok()?;
     let damping = slope.substitute(velocity, &Expr::from(coordinate)).ok()?;
     let drag = &damping * &Expr::from(velocity);
@@ -390,7 +434,10 @@ fn from_samples(samples: &[verify::Sample], odd: bool) -> (f64, Harmonics) {
         turned.sines.push(b * cosine - a * sine);
     }
     turned.sines[1] = 0.0;
-    let largest = turned.cosines.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    let largest = turned
+        .cosines
+        .iter()
+        .fold(0.0_f64, |most, value| most.max(value.abs()));
     for list in [&mut turned.cosines, &mut turned.sines] {
         if odd {
             list.iter_mut().step_by(2).for_each(|even| *even = 0.0);

@@ -1,8 +1,10 @@
-//! Certificates of equations with damping: limit cycles of `x'' + g(x) x' + h(x) = 0`, and steady motions of the same with a drive in h.
+//! Certificates of equations with damping: limit cycles of `x'' + g(x) x' + h(x) = 0`, and steady
+//! motions of the same with a drive in h.
 //!
-//! In: numbers from which a motion can be proved, anything. Out: that there is exactly one so near, its frequency or amplitude, whether a
-//! cycle attracts, and how far a formula for it is off. Where a motion on a cycle begins is free: here, and in the formula that is
-//! compared, the first harmonic has no sine. That of a driven motion is given by the drive.
+//! In: numbers from which a motion can be proved, anything. Out: that there is exactly one so near,
+//! its frequency or amplitude, whether a cycle attracts, and how far a formula for it is off. Where
+//! a motion on a cycle begins is free: here, and in the formula that is compared, the first
+//! harmonic has no sine. That of a driven motion is given by the drive.
 
 mod candidate;
 mod theorem;
@@ -34,17 +36,19 @@ pub struct Drive {
     pub harmonic: usize,
 }
 
-/// Numbers from which a limit cycle can be proved, or a steady motion of a drive. They may be anything: [`check_damped`] trusts none of them.
+/// Numbers from which a limit cycle can be proved, or a steady motion of a drive. They may be
+/// anything: [`check_damped`] trusts none of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DampedCertificate {
     /// `g` of `x'' + g(x) x' + h(x) = 0`, in the letter [`x`](super::coordinate) and numbers.
     pub damping: Expr,
-    /// `h`, likewise; of a driven equation it has the letters `c` and `s` too, `cos(Omega t)` and `sin(Omega t)`.
+    /// `h`, likewise; of a driven equation it has the letters `c` and `s` too, `cos(Omega t)` and
+    /// `sin(Omega t)`.
     pub force: Expr,
     /// What drives the motion; `None` of a limit cycle.
     pub drive: Option<Drive>,
-    /// Whether the motion has odd harmonics alone, as it may where half a period later the equation is its mirror image: `g` is even and `h`
-    /// odd.
+    /// Whether the motion has odd harmonics alone, as it may where half a period later the equation
+    /// is its mirror image: `g` is even and `h` odd.
     pub odd: bool,
     /// `reciprocal` and the coefficients are integers times `2^-bits`.
     pub bits: usize,
@@ -52,15 +56,17 @@ pub struct DampedCertificate {
     pub reciprocal: Integer,
     /// About the cosine coefficients of the motion, that of the constant first.
     pub cosines: Vec<Integer>,
-    /// About the sine coefficients by harmonic; that of the constant is zero, and of a limit cycle that of the first harmonic too.
+    /// About the sine coefficients by harmonic; that of the constant is zero, and of a limit cycle
+    /// that of the first harmonic too.
     pub sines: Vec<Integer>,
     /// The last harmonic of the block, odd where `odd`.
     pub highest: usize,
     /// The entries of the inverse are integers times `2^-inverse_bits`.
     pub inverse_bits: usize,
-    /// About the inverse of the derivative on the block, row by row. The columns are those of the equations: the sine of the first harmonic,
-    /// then of each harmonic the cosine and the sine, as far as they are left. The rows are those of the unknowns: `1/omega`, then
-    /// the same. With a drive both are of each harmonic the cosine and the sine.
+    /// About the inverse of the derivative on the block, row by row. The columns are those of the
+    /// equations: the sine of the first harmonic, then of each harmonic the cosine and the sine, as
+    /// far as they are left. The rows are those of the unknowns: `1/omega`, then the same. With a
+    /// drive both are of each harmonic the cosine and the sine.
     pub inverse: Vec<Vec<Integer>>,
     /// The weight of `1/omega` in the norm is `2^sigma`; zero where the drive gives it.
     pub sigma: i32,
@@ -92,7 +98,9 @@ pub struct DampedCertificate {
 pub fn check_damped(certificate: &DampedCertificate) -> Result<Certified, CheckError> {
     certificate.well_formed().map_err(CheckError::Malformed)?;
     let proof = theorem::prove(certificate.problem()).map_err(CheckError::NotProved)?;
-    let certified = certificate.certified(proof).map_err(CheckError::NotProved)?;
+    let certified = certificate
+        .certified(proof)
+        .map_err(CheckError::NotProved)?;
     formula::hold_claims(&certificate.claim, certificate.formula.as_ref(), &certified)?;
     Ok(certified)
 }
@@ -148,14 +156,22 @@ impl DampedCertificate {
 
     /// The approximate motion.
     fn motion(&self) -> FourierSeries {
-        let balls = |units: &[Integer]| units.iter().map(|units| WORKING.dyadic(units, self.bits)).collect();
+        let balls = |units: &[Integer]| {
+            units
+                .iter()
+                .map(|units| WORKING.dyadic(units, self.bits))
+                .collect()
+        };
         FourierSeries::exactly(balls(&self.cosines), balls(&self.sines)).of_digits(self.bits)
     }
 
     /// What does not fit together.
     fn well_formed(&self) -> Result<(), &'static str> {
         let drive = self.drive.as_ref();
-        let waves = drive.map(|_| theorem::waves_of_drive()).into_iter().flatten();
+        let waves = drive
+            .map(|_| theorem::waves_of_drive())
+            .into_iter()
+            .flatten();
         let letters: Vec<Symbol> = waves.chain([coordinate()]).collect();
         let fits = Sizes {
             bits: [self.bits, self.inverse_bits],
@@ -165,7 +181,10 @@ impl DampedCertificate {
             number: &self.reciprocal,
             coefficients: &[&self.cosines, &self.sines],
             inverse: &self.inverse,
-            expressions: &[(&self.damping, &letters[letters.len() - 1..]), (&self.force, &letters)],
+            expressions: &[
+                (&self.damping, &letters[letters.len() - 1..]),
+                (&self.force, &letters),
+            ],
         };
         // Sizes before arithmetic: the block may be as long as it is said to be.
         fits.of_numbers()?;
@@ -178,7 +197,9 @@ impl DampedCertificate {
         }
         fits.of_inverse(unknowns)?;
         if drive.is_none() && !self.cosines.get(1).is_some_and(|first| first.is_positive()) {
-            return Err("a first harmonic that is no positive cosine: half a period later the motion is the same");
+            return Err(
+                "a first harmonic that is no positive cosine: half a period later the motion is the same",
+            );
         }
         self.well_formed_formula()?;
         let given = if self.drive.is_some() { 1 } else { 2 };
@@ -196,7 +217,9 @@ impl DampedCertificate {
     /// # Errors
     /// The demand that does not hold.
     fn well_formed_formula(&self) -> Result<(), &'static str> {
-        let Some(formula) = &self.formula else { return Ok(()) };
+        let Some(formula) = &self.formula else {
+            return Ok(());
+        };
         formula.well_formed(self.drive.is_some())?;
         self.law_is_held(formula).map(|_| ())
     }
@@ -215,9 +238,11 @@ impl DampedCertificate {
         }
     }
 
-    /// Returns the motions that the symmetries of the equation make of one, itself first. With a drive of n periods that is the motion any number of periods
-    /// of the drive later. Of an equation that stays as it is with x turned, `-X` is one as well, and where it does so half a period of the drive
-    /// later, `-X` half a period later is; of a limit cycle that is `-X` half its own period later, whose first harmonic is a positive cosine too.
+    /// Returns the motions that the symmetries of the equation make of one, itself first. With a
+    /// drive of n periods that is the motion any number of periods of the drive later. Of an
+    /// equation that stays as it is with x turned, `-X` is one as well, and where it does so half a
+    /// period of the drive later, `-X` half a period later is; of a limit cycle that is `-X` half
+    /// its own period later, whose first harmonic is a positive cosine too.
     fn copies(&self, motion: &FourierSeries) -> Result<Vec<FourierSeries>, ExprError> {
         let periods = self.drive.as_ref().map_or(1, |drive| drive.periods);
         let [alone, with_drive] = self.mirrors()?;
@@ -237,8 +262,9 @@ impl DampedCertificate {
         Ok(copies)
     }
 
-    /// Returns whether the mirror image of the equation is the equation itself, and whether it is that half a period of the drive later, or of the
-    /// cycle; not those symmetries that a motion of odd harmonics has by itself.
+    /// Returns whether the mirror image of the equation is the equation itself, and whether it is
+    /// that half a period of the drive later, or of the cycle; not those symmetries that a motion
+    /// of odd harmonics has by itself.
     fn mirrors(&self) -> Result<[bool; 2], ExprError> {
         let problem = self.problem();
         let [cosine, sine] = theorem::waves_of_drive();
@@ -281,7 +307,10 @@ impl DampedCertificate {
         let (exponent, amplitude, errors) = match &self.drive {
             None => {
                 let errors = |formula: &JudgedFormula| {
-                    truth.errors(&formula.frequency_ball(self.bits), &turned(formula.motion(self.bits)))
+                    truth.errors(
+                        &formula.frequency_ball(self.bits),
+                        &turned(formula.motion(self.bits)),
+                    )
                 };
                 let exponent = Enclosure::of(&self.exponent(&motion, proof.radius)?);
                 (Some(exponent), None, formula.map(errors))
@@ -308,8 +337,8 @@ impl DampedCertificate {
         })
     }
 
-    /// The characteristic exponent of a limit cycle: by Liouville's formula the product of the multipliers is exp of minus the integral of
-    /// g, and one of them is one.
+    /// The characteristic exponent of a limit cycle: by Liouville's formula the product of the
+    /// multipliers is exp of minus the integral of g, and one of them is one.
     fn exponent(&self, motion: &FourierSeries, radius: Bound) -> Result<Ball, NotProved> {
         let damping = along(&self.damping, &motion.clone().widened(radius))?;
         let mut exponent = WORKING.scaled(&damping.cosine(0), -1);
@@ -323,7 +352,10 @@ impl Drive {
         const MOST_PERIODS: usize = 20;
         let small = |integer: &Integer| integer.bits() <= 700;
         let demands = [
-            (self.frequency.is_positive(), "a drive whose frequency is not positive"),
+            (
+                self.frequency.is_positive(),
+                "a drive whose frequency is not positive",
+            ),
             (
                 small(self.frequency.numer()) && small(self.frequency.denom()),
                 "a number of more than 200 digits",
@@ -347,7 +379,10 @@ impl Drive {
 /// `sqrt(a_k^2 + b_k^2)`.
 fn amplitude_of(motion: &FourierSeries, harmonic: usize) -> Ball {
     let (cosine, sine) = (motion.cosine(harmonic), motion.sine(harmonic));
-    let square = WORKING.sum(&WORKING.product(&cosine, &cosine), &WORKING.product(&sine, &sine));
+    let square = WORKING.sum(
+        &WORKING.product(&cosine, &cosine),
+        &WORKING.product(&sine, &sine),
+    );
     WORKING.root(&square, 2).unwrap_or_else(|| {
         let mut near_zero = Ball::zero();
         near_zero.radius += WORKING.magnitude(&cosine) + WORKING.magnitude(&sine);
@@ -355,13 +390,17 @@ fn amplitude_of(motion: &FourierSeries, harmonic: usize) -> Ball {
     })
 }
 
-/// The same motion with another phase: that where the first harmonic is a positive cosine; as it is where it has no first harmonic.
+/// The same motion with another phase: that where the first harmonic is a positive cosine; as it is
+/// where it has no first harmonic.
 fn turned(motion: FourierSeries) -> FourierSeries {
     let (cosine, sine) = (motion.cosine(1), motion.sine(1));
     if sine.is_zero() && cosine.middle.is_positive() {
         return motion;
     }
-    let square = WORKING.sum(&WORKING.product(&cosine, &cosine), &WORKING.product(&sine, &sine));
+    let square = WORKING.sum(
+        &WORKING.product(&cosine, &cosine),
+        &WORKING.product(&sine, &sine),
+    );
     let part = |ball: &Ball| WORKING.quotient(ball, &WORKING.root(&square, 2)?);
     match part(&cosine).zip(part(&sine)) {
         Some((cosine, sine)) => motion.turned(&[cosine, sine]),

@@ -1,6 +1,8 @@
-//! The theorem for equations with damping: whether there is exactly one periodic motion near an approximate one, and how near.
+//! The theorem for equations with damping: whether there is exactly one periodic motion near an
+//! approximate one, and how near.
 //!
-//! For `x'' + g(x) x' + h(x) = 0` and `x(t) = X(omega t)`, `X(theta) = sum_k (a_k cos(k theta) + b_k sin(k theta))`, `p = 1/omega`:
+//! For `x'' + g(x) x' + h(x) = 0` and `x(t) = X(omega t)`,
+//! `X(theta) = sum_k (a_k cos(k theta) + b_k sin(k theta))`, `p = 1/omega`:
 //!
 //! ```text
 //! F = X'' + p g(X) X' + p^2 h(X),    F_k = -k^2 X_k + p [phi(X)']_k + p^2 [h(X)]_k,   phi' = g      one for each cosine and sine
@@ -8,8 +10,9 @@
 //! norm: sigma |p| + sum_k (|a_k| + |b_k|)
 //! ```
 //!
-//! The approximate inverse B is a matrix on the harmonics up to N, and `-1/k^2` beyond. With `alpha = ||B||`, and `beta` the norm of B
-//! after a derivative by theta, both over what the equations are of,
+//! The approximate inverse B is a matrix on the harmonics up to N, and `-1/k^2` beyond. With
+//! `alpha = ||B||`, and `beta` the norm of B after a derivative by theta, both over what the
+//! equations are of,
 //!
 //! ```text
 //! alpha = max(max_(k <= N) ||B e_k||, 1/(N+1)^2)         beta = max(max_(k <= N) k ||B e_k||, 1/(N+1))
@@ -23,30 +26,38 @@
 //! Z2 = max(2 alpha ||h||/sigma^2, (beta ||g|| + 2 P alpha ||h'||)/sigma, beta P ||g'|| + alpha P^2 ||h''||),   P = p + R/sigma
 //! ```
 //!
-//! where `D = g(X) X'`, eps is what a series leaves out, W is the last harmonic of g(X) and h'(X), and the norms of Z2 are over the ball of
-//! radius R. Z2 bounds the second derivative of F at u = (q, v) and u' = (q', v'),
-//! `q (g v')' + q' (g v)' + 2 q q' h + 2 p h' (q v' + q' v) + p (g' v v')' + p^2 h'' v v'`, term by term.
+//! where `D = g(X) X'`, eps is what a series leaves out, W is the last harmonic of g(X) and h'(X),
+//! and the norms of Z2 are over the ball of radius R. Z2 bounds the second derivative of F at u =
+//! (q, v) and u' = (q', v'), `q (g v')' + q' (g v)' + 2 q q' h + 2 p h' (q v' + q' v) + p (g' v
+//! v')' + p^2 h'' v v'`, term by term.
 //!
-//! If `Z1 < 1`, `D > 0`, `r <= R`, `Z1 + Z2 r < 1` (`radii_polynomial.rs`), `r/sigma < p` and `r < a_1`, there is exactly one zero of F in
-//! the ball of radius r: B is onto, hence its matrix is invertible, hence it is injective. `k X_k` is summable, for `phi(X)` is, and so is
-//! `k^2 X_k`: `X(t/p)` is a motion, at rest or of a part of the period only if a_1 were zero. DF is injective there. Were the second of
-//! Floquet's multipliers one too, a periodic solution of the variational equation, or one that grows like `t x'(t)`, would be in its kernel,
-//! with some of X' added where it has a sine of the first harmonic (X' has, for a_1 is not zero): so the motion is a limit cycle,
-//! and it attracts where `-[g(X)]_0`, by Liouville's formula its characteristic exponent, is negative.
+//! If `Z1 < 1`, `D > 0`, `r <= R`, `Z1 + Z2 r < 1` (`radii_polynomial.rs`), `r/sigma < p` and
+//! `r < a_1`, there is exactly one zero of F in the ball of radius r: B is onto, hence its matrix
+//! is invertible, hence it is injective. `k X_k` is summable, for `phi(X)` is, and so is `k^2 X_k`:
+//! `X(t/p)` is a motion, at rest or of a part of the period only if a_1 were zero. DF is injective
+//! there. Were the second of Floquet's multipliers one too, a periodic solution of the variational
+//! equation, or one that grows like `t x'(t)`, would be in its kernel, with some of X' added where
+//! it has a sine of the first harmonic (X' has, for a_1 is not zero): so the motion is a limit
+//! cycle, and it attracts where `-[g(X)]_0`, by Liouville's formula its characteristic exponent, is
+//! negative.
 //!
-//! If the motion is looked for among those of odd harmonics, all of this is said of them alone: there is exactly one zero of odd harmonics in
-//! the ball, and one with even harmonics may be as near. A limit cycle is isolated all the same: half a period and a turn of x are a map
-//! whose second multiplier is positive, and the root of that of the period; were that one, so were this, and the solution above would have
-//! odd harmonics.
+//! If the motion is looked for among those of odd harmonics, all of this is said of them alone:
+//! there is exactly one zero of odd harmonics in the ball, and one with even harmonics may be as
+//! near. A limit cycle is isolated all the same: half a period and a turn of x are a map whose
+//! second multiplier is positive, and the root of that of the period; were that one, so were this,
+//! and the solution above would have odd harmonics.
 //!
-//! Of a driven equation, `x'' + g(x) x' + h(x, cos(Omega t), sin(Omega t)) = 0`, p is known, a whole number n of periods of the drive to a
-//! turn of theta: `p = n/Omega`. Then p is no unknown, b_1 is one, and all that belongs to p above is left out: its column, the first two terms
-//! of Z2, and `R/sigma` in P. With h along X goes the drive, `cos(n theta)` and `sin(n theta)`; its derivative is that by x. The zero in
-//! the ball is a motion that repeats itself after n periods of the drive; that it takes fewer, and that it attracts, are not excluded.
+//! Of a driven equation, `x'' + g(x) x' + h(x, cos(Omega t), sin(Omega t)) = 0`, p is known, a
+//! whole number n of periods of the drive to a turn of theta: `p = n/Omega`. Then p is no unknown,
+//! b_1 is one, and all that belongs to p above is left out: its column, the first two terms of Z2,
+//! and `R/sigma` in P. With h along X goes the drive, `cos(n theta)` and `sin(n theta)`; its
+//! derivative is that by x. The zero in the ball is a motion that repeats itself after n periods of
+//! the drive; that it takes fewer, and that it attracts, are not excluded.
 //!
-//! Source: A. Hungria, J.-P. Lessard, J. D. Mireles James: Rigorous numerics for analytic solutions of differential equations:
-//! the radii polynomial approach, Mathematics of Computation 85 (2016), 1427-1459; J. B. van den Berg, J.-P. Lessard: Rigorous
-//! numerics in dynamics, Notices of the AMS 62 (2015), 1057-1061. The cost is that of `N^2 (N + W)` products of short integers.
+//! Source: A. Hungria, J.-P. Lessard, J. D. Mireles James: Rigorous numerics for analytic solutions
+//! of differential equations: the radii polynomial approach, Mathematics of Computation 85 (2016),
+//! 1427-1459; J. B. van den Berg, J.-P. Lessard: Rigorous numerics in dynamics, Notices of the AMS
+//! 62 (2015), 1057-1061. The cost is that of `N^2 (N + W)` products of short integers.
 
 use num_traits::Signed as _;
 
@@ -78,7 +89,8 @@ pub(super) struct Problem<'a> {
     pub(super) damping: &'a Expr,
     /// h, with the letters of the [drive](waves_of_drive) where there is one.
     pub(super) force: &'a Expr,
-    /// How many periods the drive has in one of the motion; `None` of a limit cycle, of which p is an unknown.
+    /// How many periods the drive has in one of the motion; `None` of a limit cycle, of which p is
+    /// an unknown.
     pub(super) drive: Option<usize>,
     /// Whether the motion has odd harmonics alone.
     pub(super) odd: bool,
@@ -106,8 +118,8 @@ impl Problem<'_> {
         if self.odd { 2 } else { 1 }
     }
 
-    /// The equations of the block. Of a limit cycle that of the sine of the first harmonic is the first: there p has its place among the
-    /// unknowns.
+    /// The equations of the block. Of a limit cycle that of the sine of the first harmonic is the
+    /// first: there p has its place among the unknowns.
     pub(super) fn block(&self) -> Vec<Wave> {
         let harmonics = (usize::from(self.odd)..=self.highest).step_by(self.step());
         let waves = harmonics.flat_map(|k| [Wave::Cosine(k), Wave::Sine(k)]);
@@ -139,10 +151,12 @@ impl Problem<'_> {
         )
     }
 
-    /// Whether half a period later the equation is its mirror image, and the motion has odd harmonics alone.
+    /// Whether half a period later the equation is its mirror image, and the motion has odd
+    /// harmonics alone.
     pub(super) fn is_odd(&self) -> Result<bool, ExprError> {
         let [cosine, sine] = waves_of_drive();
-        // Half a period of the motion is a whole number of those of the drive, or half of one beside.
+        // Half a period of the motion is a whole number of those of the drive, or half of one
+        // beside.
         let letters = match self.drive {
             Some(periods) if periods % 2 == 1 => vec![coordinate(), cosine, sine],
             _ => vec![coordinate()],
@@ -157,7 +171,8 @@ impl Problem<'_> {
         Ok(is_even(self.damping, letters)? && is_odd(self.force, letters)?)
     }
 
-    /// Whether what is so near is no motion at rest, nor one of another period. Where p is known, nothing of that kind is claimed.
+    /// Whether what is so near is no motion at rest, nor one of another period. Where p is known,
+    /// nothing of that kind is claimed.
     fn is_distinct(&self, radius: Bound, sigma: Bound) -> bool {
         !self.is_free()
             || self.reciprocal.middle.is_positive()
@@ -200,8 +215,8 @@ pub(super) fn prove(problem: Problem) -> Result<Proof, NotProved> {
     radius(defect, contraction, curvature, distinct)
 }
 
-/// What is to be subtracted from p and the harmonics of a certificate, so that it is nearer to the solution; nothing is proved of
-/// it.
+/// What is to be subtracted from p and the harmonics of a certificate, so that it is nearer to the
+/// solution; nothing is proved of it.
 ///
 /// # Errors
 /// As [`prove`].
@@ -220,7 +235,11 @@ pub(super) fn derivative_of_block(problem: Problem) -> Result<Vec<Vec<f64>>, Not
         true => WORKING.nearest(&equations.by_reciprocal(row)),
         false => SHORT.nearest(&derivative.entry(row, equations.block[place])),
     };
-    let row = |row: &Wave| (0..equations.block.len()).map(|place| entry(*row, place)).collect();
+    let row = |row: &Wave| {
+        (0..equations.block.len())
+            .map(|place| entry(*row, place))
+            .collect()
+    };
     Ok(equations.block.iter().map(row).collect())
 }
 
@@ -233,7 +252,11 @@ struct Multiplier {
 impl Multiplier {
     fn of(series: &FourierSeries) -> Self {
         let halved = |(k, ball): (usize, &Ball)| {
-            let half = if k == 0 { ball.clone() } else { WORKING.divided(ball, 2) };
+            let half = if k == 0 {
+                ball.clone()
+            } else {
+                WORKING.divided(ball, 2)
+            };
             SHORT.converted(&half, WORKING)
         };
         let halves = |balls: &[Ball]| balls.iter().enumerate().map(halved).collect();
@@ -257,12 +280,18 @@ impl Multiplier {
         };
         let both = match (row, column) {
             (Wave::Cosine(_), Wave::Cosine(_)) => SHORT.sum(&cosine(k.abs_diff(j)), &cosine(k + j)),
-            (Wave::Sine(_), Wave::Sine(_)) => SHORT.difference(&cosine(k.abs_diff(j)), &cosine(k + j)),
+            (Wave::Sine(_), Wave::Sine(_)) => {
+                SHORT.difference(&cosine(k.abs_diff(j)), &cosine(k + j))
+            }
             (Wave::Sine(_), Wave::Cosine(_)) => SHORT.sum(&apart(k < j), &sine(k + j)),
             (Wave::Cosine(_), Wave::Sine(_)) => SHORT.sum(&apart(j < k), &sine(k + j)),
         };
         // Of the constant both are one.
-        if k == 0 { SHORT.divided(&both, 2) } else { both }
+        if k == 0 {
+            SHORT.divided(&both, 2)
+        } else {
+            both
+        }
     }
 }
 
@@ -291,8 +320,12 @@ impl Derivative {
         let k = row.harmonic() as i64;
         // (cos)' = -k sin, (sin)' = k cos.
         let drag = match row {
-            Wave::Cosine(harmonic) => SHORT.scaled(&self.by_damping.at(Wave::Sine(harmonic), column), k),
-            Wave::Sine(harmonic) => SHORT.scaled(&self.by_damping.at(Wave::Cosine(harmonic), column), -k),
+            Wave::Cosine(harmonic) => {
+                SHORT.scaled(&self.by_damping.at(Wave::Sine(harmonic), column), k)
+            }
+            Wave::Sine(harmonic) => {
+                SHORT.scaled(&self.by_damping.at(Wave::Cosine(harmonic), column), -k)
+            }
         };
         SHORT.sum(
             &SHORT.product(&self.reciprocal, &drag),
@@ -319,14 +352,17 @@ struct Equations<'a> {
     drag: FourierSeries,
     /// h(X).
     force: FourierSeries,
-    /// Those of the block, that of the sine of the first harmonic first; of the unknowns p has its place.
+    /// Those of the block, that of the sine of the first harmonic first; of the unknowns p has its
+    /// place.
     block: Vec<Wave>,
 }
 
 impl<'a> Equations<'a> {
     fn of(problem: Problem<'a>) -> Result<Self, NotProved> {
         let motion = &problem.motion;
-        let drag = problem.along(problem.damping, motion)?.product(&motion.derivative());
+        let drag = problem
+            .along(problem.damping, motion)?
+            .product(&motion.derivative());
         let force = problem.along(problem.force, motion)?;
         Ok(Self {
             squared: WORKING.product(&problem.reciprocal, &problem.reciprocal),
@@ -345,7 +381,9 @@ impl<'a> Equations<'a> {
     fn derivative(&self) -> Result<Derivative, NotProved> {
         let problem = &self.problem;
         let slope = problem.force.differentiate(coordinate())?;
-        let damping = problem.along(problem.damping, &problem.motion)?.shortened(ROUGH);
+        let damping = problem
+            .along(problem.damping, &problem.motion)?
+            .shortened(ROUGH);
         let slope = problem.along(&slope, &problem.motion)?.shortened(ROUGH);
         Ok(Derivative {
             reciprocal: SHORT.converted(&problem.reciprocal, WORKING),
@@ -361,7 +399,9 @@ impl<'a> Equations<'a> {
     fn beyond(&self, from: usize, to: usize) -> impl Iterator<Item = Wave> + use<> {
         let (step, highest) = (self.problem.step(), self.problem.highest);
         let from = from.max(highest + 1);
-        let harmonics = (highest + step..=to).step_by(step).skip_while(move |k| *k < from);
+        let harmonics = (highest + step..=to)
+            .step_by(step)
+            .skip_while(move |k| *k < from);
         harmonics.flat_map(|k| [Wave::Cosine(k), Wave::Sine(k)])
     }
 
@@ -414,7 +454,8 @@ impl<'a> System<'a> {
         for (column, wave) in equations.block.iter().enumerate() {
             let norm = inverse.norm_of_column(column);
             size = size.max(norm);
-            size_of_derivative = size_of_derivative.max(norm * Bound::exactly(wave.harmonic() as f64));
+            size_of_derivative =
+                size_of_derivative.max(norm * Bound::exactly(wave.harmonic() as f64));
         }
         Ok(Self {
             equations,
@@ -424,7 +465,8 @@ impl<'a> System<'a> {
         })
     }
 
-    /// `B F`: the correction of p and of every harmonic, by which the approximation is the further off.
+    /// `B F`: the correction of p and of every harmonic, by which the approximation is the further
+    /// off.
     fn correction(&self) -> Correction<Wave> {
         let beyond = self.equations.beyond(0, self.equations.last()).map(|wave| {
             let image = WORKING.divided(&self.equations.bent(wave), wave.squared());
@@ -454,8 +496,13 @@ impl<'a> System<'a> {
     /// Y0.
     fn defect(&self) -> Bound {
         let correction = self.correction();
-        let beyond: Bound = correction.beyond.iter().map(|(_, y)| WORKING.magnitude(y)).sum();
-        let unseen = WORKING.magnitude(&self.equations.problem.reciprocal) * self.equations.drag.tail
+        let beyond: Bound = correction
+            .beyond
+            .iter()
+            .map(|(_, y)| WORKING.magnitude(y))
+            .sum();
+        let unseen = WORKING.magnitude(&self.equations.problem.reciprocal)
+            * self.equations.drag.tail
             + WORKING.magnitude(&self.equations.squared) * self.equations.force.tail;
         self.inverse.norm(&correction.block, WORKING) + beyond + self.size * unseen
     }
@@ -463,8 +510,8 @@ impl<'a> System<'a> {
     /// Z1.
     fn contraction(&self, derivative: &Derivative) -> Result<Bound, NotProved> {
         let one = Bound::exactly(1.0);
-        let [reciprocal, squared] =
-            [&self.equations.problem.reciprocal, &self.equations.squared].map(|ball| WORKING.magnitude(ball));
+        let [reciprocal, squared] = [&self.equations.problem.reciprocal, &self.equations.squared]
+            .map(|ball| WORKING.magnitude(ball));
         let (highest, width) = (self.equations.problem.highest, derivative.width());
         let unseen = self.size_of_derivative * reciprocal * derivative.damping.tail
             + self.size * squared * derivative.slope.tail;
@@ -476,14 +523,18 @@ impl<'a> System<'a> {
         let in_block = self.equations.block.iter().enumerate().skip(waves_from);
         let in_block = in_block.map(|(place, wave)| (*wave, Some(place)));
         // Where g and h' reach into the block, and beyond.
-        let near = self.equations.beyond(0, highest + width).map(|wave| (wave, None));
+        let near = self
+            .equations
+            .beyond(0, highest + width)
+            .map(|wave| (wave, None));
         for (wave, place) in in_block.chain(near) {
             largest = largest.max(self.column(derivative, wave, place));
             if largest + unseen >= one {
                 return Err(NotProved::NoContraction(largest + unseen));
             }
         }
-        let [damping, slope] = [&derivative.damping, &derivative.slope].map(FourierSeries::finite_norm);
+        let [damping, slope] =
+            [&derivative.damping, &derivative.slope].map(FourierSeries::finite_norm);
         let mut upto = highest + width;
         let rest = loop {
             let far = (upto + 1 - width) as f64;
@@ -507,7 +558,11 @@ impl<'a> System<'a> {
         let tail: Bound = self
             .equations
             .beyond(0, self.equations.last())
-            .map(|wave| WORKING.magnitude(&WORKING.divided(&self.equations.by_reciprocal(wave), wave.squared())))
+            .map(|wave| {
+                WORKING.magnitude(
+                    &WORKING.divided(&self.equations.by_reciprocal(wave), wave.squared()),
+                )
+            })
             .sum();
         let vector = self.equations.block.iter();
         let vector: Vec<Ball> = vector
@@ -516,7 +571,8 @@ impl<'a> System<'a> {
         let twice = WORKING.magnitude(&self.equations.problem.reciprocal)
             + WORKING.magnitude(&self.equations.problem.reciprocal);
         let unseen = self.size * (self.equations.drag.tail + twice * self.equations.force.tail);
-        (self.inverse.distance_from_unit(&vector, Some(0)) + tail + unseen).over(self.inverse.sigma.value())
+        (self.inverse.distance_from_unit(&vector, Some(0)) + tail + unseen)
+            .over(self.inverse.sigma.value())
     }
 
     /// The column of a wave, in the block at this place or beyond it.
@@ -525,7 +581,9 @@ impl<'a> System<'a> {
         let tail: Bound = self
             .equations
             .beyond((j + 1).saturating_sub(width), j + width)
-            .map(|row| SHORT.magnitude(&SHORT.divided(&derivative.bent(row, column), row.squared())))
+            .map(|row| {
+                SHORT.magnitude(&SHORT.divided(&derivative.bent(row, column), row.squared()))
+            })
             .sum();
         // Far beyond, nothing of g and h' reaches the block.
         if j > self.equations.problem.highest + width {
@@ -541,11 +599,17 @@ impl<'a> System<'a> {
     }
 
     /// Z2 on the ball of this radius, with the norms of g, g', h, h', h'' over it.
-    fn curvature(&self, [damping, its_slope, force, slope, bend]: [Bound; 5], radius: Bound) -> Bound {
+    fn curvature(
+        &self,
+        [damping, its_slope, force, slope, bend]: [Bound; 5],
+        radius: Bound,
+    ) -> Bound {
         let sigma = self.inverse.sigma.value();
         let (size, steep) = (self.size, self.size_of_derivative);
         let known = WORKING.magnitude(&self.equations.problem.reciprocal);
-        let both_of_motion = |reciprocal: Bound| steep * reciprocal * its_slope + size * reciprocal * reciprocal * bend;
+        let both_of_motion = |reciprocal: Bound| {
+            steep * reciprocal * its_slope + size * reciprocal * reciprocal * bend
+        };
         if !self.equations.problem.is_free() {
             return both_of_motion(known);
         }
@@ -553,7 +617,9 @@ impl<'a> System<'a> {
         let twice = |bound: Bound| bound + bound;
         let both_of_reciprocal = twice(size * force).over(sigma).over(sigma);
         let one_of_each = (steep * damping + twice(reciprocal * size * slope)).over(sigma);
-        both_of_reciprocal.max(one_of_each).max(both_of_motion(reciprocal))
+        both_of_reciprocal
+            .max(one_of_each)
+            .max(both_of_motion(reciprocal))
     }
 }
 
@@ -575,13 +641,16 @@ mod tests {
         };
         let solution = solve(&oscillator, &options).expect("a solution");
         let at = "mu = 1/2".parse().expect("values");
-        certify_cycle(&oscillator, &solution, &at).expect("a certificate").0
+        certify_cycle(&oscillator, &solution, &at)
+            .expect("a certificate")
+            .0
     }
 
     /// A cycle nearby, of an equation that is neither odd nor one of polynomials.
     fn skew() -> DampedCertificate {
         let mut certificate = certificate();
-        let with = |force: &Expr, more: &str| force + &parse_expression(more).expect("an expression");
+        let with =
+            |force: &Expr, more: &str| force + &parse_expression(more).expect("an expression");
         certificate.damping = with(&certificate.damping, "exp(-x/2)/10 + x/5");
         certificate.force = with(&certificate.force, "sin(x)/10 + x^2/20");
         certificate.odd = false;
@@ -591,19 +660,24 @@ mod tests {
         certificate.bits -= LESS;
         certificate.reciprocal = certificate.reciprocal.clone() >> LESS;
         for list in [&mut certificate.cosines, &mut certificate.sines] {
-            list.iter_mut().for_each(|units| *units = units.clone() >> LESS);
+            list.iter_mut()
+                .for_each(|units| *units = units.clone() >> LESS);
         }
         proved_by_some_block(&mut certificate, 30).expect("a proof");
         certificate
     }
 
-    /// A driven motion of an equation that is neither odd nor one of polynomials, with two waves, one of them before x.
+    /// A driven motion of an equation that is neither odd nor one of polynomials, with two waves,
+    /// one of them before x.
     fn driven() -> DampedCertificate {
-        let oscillator = Oscillator::parse("x'' + x'/5 + x + x^3/10 - cos(Omega*t)/2 = 0").expect("an equation");
+        let oscillator =
+            Oscillator::parse("x'' + x'/5 + x + x^3/10 - cos(Omega*t)/2 = 0").expect("an equation");
         let solution = solve(&oscillator, &Options::default()).expect("a solution");
         let at = "Omega = 6/5".parse().expect("values");
-        let (mut certificate, _) = certify_driven(&oscillator, &solution, &at).expect("a certificate");
-        let with = |force: &Expr, more: &str| force + &parse_expression(more).expect("an expression");
+        let (mut certificate, _) =
+            certify_driven(&oscillator, &solution, &at).expect("a certificate");
+        let with =
+            |force: &Expr, more: &str| force + &parse_expression(more).expect("an expression");
         certificate.damping = with(&certificate.damping, "exp(-x/2)/20 + x/20");
         certificate.force = with(&certificate.force, "sin(x)/20 + x^2/40 + x*s/20 - c*s/10");
         certificate.odd = false;
@@ -611,7 +685,8 @@ mod tests {
         const LESS: usize = 64;
         certificate.bits -= LESS;
         for list in [&mut certificate.cosines, &mut certificate.sines] {
-            list.iter_mut().for_each(|units| *units = units.clone() >> LESS);
+            list.iter_mut()
+                .for_each(|units| *units = units.clone() >> LESS);
         }
         proved_by_some_block(&mut certificate, 20).expect("a proof");
         certificate
@@ -628,12 +703,15 @@ mod tests {
         assert!(certified.proof.radius.value() < 1e-10, "{certified:?}");
     }
 
-    /// omega of the cycle that a motion ends on, from the times at which it goes upwards through zero.
+    /// omega of the cycle that a motion ends on, from the times at which it goes upwards through
+    /// zero.
     fn followed(equation: &str) -> f64 {
         let oscillator = Oscillator::parse(equation).expect("an equation");
-        let force =
-            crate::expr::CompiledFunction::new(&oscillator.force, &[oscillator.coordinate, oscillator.velocity()])
-                .expect("a function");
+        let force = crate::expr::CompiledFunction::new(
+            &oscillator.force,
+            &[oscillator.coordinate, oscillator.velocity()],
+        )
+        .expect("a function");
         let field = |[x, v]: [f64; 2]| [v, -force.call(&[x, v])];
         let step = |[x, v]: [f64; 2], h: f64| {
             let at = |k: [f64; 2], part: f64| [x + part * h * k[0], v + part * h * k[1]];
@@ -649,7 +727,12 @@ mod tests {
             const STEP: f64 = 1.0 / 512.0;
             let next = step(state, STEP);
             if state[0] < 0.0 && next[0] >= 0.0 {
-                let [part, _] = bisect(|part| step(state, part)[0] < 0.0, 0.0, STEP, Until::Halvings(60));
+                let [part, _] = bisect(
+                    |part| step(state, part)[0] < 0.0,
+                    0.0,
+                    STEP,
+                    Until::Halvings(60),
+                );
                 crossings.push(t + part);
             }
             (state, t) = (next, t + STEP);
@@ -708,7 +791,9 @@ mod tests {
     fn place_of(system: &System, wave: Wave) -> Option<usize> {
         let first = system.equations.unknowns_before_waves();
         let mut waves = system.equations.block[first..].iter();
-        waves.position(|other| *other == wave).map(|place| place + first)
+        waves
+            .position(|other| *other == wave)
+            .map(|place| place + first)
     }
 
     /// The norm of B of a series, less a direction.
@@ -723,7 +808,8 @@ mod tests {
         let mut beyond = 0.0;
         for row in system.equations.beyond(0, series.length()) {
             let own = if less == Some(Some(row)) { 1.0 } else { 0.0 };
-            beyond += (-WORKING.nearest(&series.coefficient(row)) / f64::from(row.squared()) - own).abs();
+            beyond +=
+                (-WORKING.nearest(&series.coefficient(row)) / f64::from(row.squared()) - own).abs();
         }
         if let Some(place) = less.and_then(place) {
             image[place] = WORKING.difference(&image[place], &WORKING.integer(1));
@@ -731,7 +817,8 @@ mod tests {
         beyond + system.inverse.norm(&image, WORKING).value()
     }
 
-    /// Every direction up to a harmonic, that of p first, where it is one; with the weight that it has in the norm.
+    /// Every direction up to a harmonic, that of p first, where it is one; with the weight that it
+    /// has in the norm.
     fn directions(system: &System, highest: usize) -> Vec<(Option<Wave>, f64)> {
         let first = system.equations.unknowns_before_waves();
         let block = system.equations.block[first..].iter().copied();
@@ -752,9 +839,15 @@ mod tests {
         );
         let column = |(direction, weight)| {
             let image = place.derivative(direction);
-            (direction, size_of_image(system, &image, Some(direction)) / weight)
+            (
+                direction,
+                size_of_image(system, &image, Some(direction)) / weight,
+            )
         };
-        directions(system, highest).into_iter().map(column).collect()
+        directions(system, highest)
+            .into_iter()
+            .map(column)
+            .collect()
     }
 
     #[test]
@@ -772,7 +865,9 @@ mod tests {
             for (certificate, is_proved) in [(&sound, true), (&spoilt, false), (&light, false)] {
                 let system = System::of(certificate.problem()).expect("a system");
                 let derivative = system.equations.derivative().expect("a derivative");
-                let contraction = system.contraction(&derivative).map_or(f64::INFINITY, Bound::value);
+                let contraction = system
+                    .contraction(&derivative)
+                    .map_or(f64::INFINITY, Bound::value);
                 assert_eq!(contraction < 0.5, is_proved, "{contraction}");
                 for (direction, size) in columns(&system, 3 * certificate.highest + 90) {
                     let bound = match direction {
@@ -780,8 +875,14 @@ mod tests {
                         Some(wave) => system.column(&derivative, wave, place_of(&system, wave)),
                     };
                     // What was cut from g and h' is not in the column, but in the sum.
-                    assert!(size <= bound.value() + 1e-9, "{direction:?}: {size}, {bound:?}");
-                    assert!(size > 0.99 * bound.value() - 1e-9, "{direction:?}: {size}, {bound:?}");
+                    assert!(
+                        size <= bound.value() + 1e-9,
+                        "{direction:?}: {size}, {bound:?}"
+                    );
+                    assert!(
+                        size > 0.99 * bound.value() - 1e-9,
+                        "{direction:?}: {size}, {bound:?}"
+                    );
                     assert!(size <= contraction, "{direction:?}: {size}, {contraction}");
                 }
             }
@@ -800,7 +901,10 @@ mod tests {
         let (mut drag, mut force) = (system(), system());
         drag.equations.drag.tail += more;
         force.equations.force.tail += more;
-        for (wider, factor, of_reciprocal) in [(&drag, reciprocal, 1.0), (&force, squared, 2.0 * reciprocal)] {
+        for (wider, factor, of_reciprocal) in [
+            (&drag, reciprocal, 1.0),
+            (&force, squared, 2.0 * reciprocal),
+        ] {
             let by = wider.defect().value() - own.defect().value();
             assert!((by / (0.001 * size * factor) - 1.0).abs() < 1e-9, "{by}");
             let by = wider.column_of_reciprocal().value() - own.column_of_reciprocal().value();
@@ -808,7 +912,8 @@ mod tests {
             assert!((by / expected - 1.0).abs() < 1e-9, "{by}");
         }
         let derivative = || own.equations.derivative().expect("a derivative");
-        let contraction = |derivative: &Derivative| own.contraction(derivative).expect("a contraction").value();
+        let contraction =
+            |derivative: &Derivative| own.contraction(derivative).expect("a contraction").value();
         let (mut damping, mut slope) = (derivative(), derivative());
         damping.damping.tail += more;
         slope.slope.tail += more;
@@ -820,7 +925,10 @@ mod tests {
         // A harmonic beyond the block is off by itself.
         let mut shaken = certificate.clone();
         shaken.cosines[41] += Integer::from(1) << (shaken.bits - 20);
-        let defect = System::of(shaken.problem()).expect("a system").defect().value();
+        let defect = System::of(shaken.problem())
+            .expect("a system")
+            .defect()
+            .value();
         assert!((defect * f64::from(1 << 20) - 1.0).abs() < 0.2, "{defect}");
     }
 
@@ -831,7 +939,10 @@ mod tests {
     }
 
     fn second_derivative_is_bounded(certificate: &DampedCertificate) {
-        let (h, within) = (Bound::power_of_two(-20), WORKING.fraction(&ratio(1, 1 << 20)));
+        let (h, within) = (
+            Bound::power_of_two(-20),
+            WORKING.fraction(&ratio(1, 1 << 20)),
+        );
         let system = System::of(certificate.problem()).expect("a system");
         let ball = system.equations.problem.motion.clone().widened(h);
         let slope = |expression: &Expr| expression.differentiate(coordinate()).expect("a slope");
@@ -847,7 +958,13 @@ mod tests {
         // Of two directions, none, one or both of them the motion's: each has terms of its own.
         let bounds = [
             [Bound::ZERO, Bound::ZERO, norm(f), Bound::ZERO, Bound::ZERO],
-            [norm(g), Bound::ZERO, Bound::ZERO, norm(&slope(f)), Bound::ZERO],
+            [
+                norm(g),
+                Bound::ZERO,
+                Bound::ZERO,
+                norm(&slope(f)),
+                Bound::ZERO,
+            ],
             [
                 Bound::ZERO,
                 norm(&slope(g)),
@@ -869,7 +986,10 @@ mod tests {
             // So far that the norm of the step is h.
             match from {
                 None => reciprocal = WORKING.sum(&reciprocal, &within),
-                Some(from) => motion = motion.sum(&wave(*from).product(&FourierSeries::constant(within.clone()))),
+                Some(from) => {
+                    motion =
+                        motion.sum(&wave(*from).product(&FourierSeries::constant(within.clone())))
+                }
             }
             let moved = Place::of(&system.equations.problem, &motion, &reciprocal);
             for (along, other) in &directions {

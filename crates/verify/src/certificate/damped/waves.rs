@@ -1,6 +1,7 @@
 //! Sines and cosines of time as letters: those of the drive, and of multiples of its frequency.
 //!
-//! In: an expression in time, and a frequency. Out: the same in `c = cos(Omega t)` and `s = sin(Omega t)`, exactly.
+//! In: an expression in time, and a frequency. Out: the same in `c = cos(Omega t)` and
+//! `s = sin(Omega t)`, exactly.
 
 use num_traits::ToPrimitive as _;
 
@@ -16,8 +17,9 @@ use crate::expr::{Expr, Function, Node};
 use crate::symbol::Symbol;
 use crate::values::Values;
 
-/// The displacement of a driven motion by its law as text, `x = a*cos(Omega*t - psi)` with values of all letters but t, over the periods of the
-/// motion; `None` of words, and of what has no such series.
+/// The displacement of a driven motion by its law as text, `x = a*cos(Omega*t - psi)` with values
+/// of all letters but t, over the periods of the motion; `None` of words, and of what has no such
+/// series.
 pub(super) fn displacement(law: &str, values: &Values, drive: &Drive) -> Option<FourierSeries> {
     let time = Symbol::new("t");
     let (_, value) = law::with_values(law, values)?;
@@ -33,14 +35,20 @@ pub(super) fn displacement(law: &str, values: &Values, drive: &Drive) -> Option<
 }
 
 /// An expression with the letters of `cos(Omega t)` and `sin(Omega t)` in place of time.
-pub(super) fn in_waves(expression: &Expr, time: Symbol, frequency: &Rational) -> Result<Expr, NotCertified> {
+pub(super) fn in_waves(
+    expression: &Expr,
+    time: Symbol,
+    frequency: &Rational,
+) -> Result<Expr, NotCertified> {
     let own = waves_of_drive();
     if let Some(taken) = own.iter().find(|name| expression.contains(**name)) {
         return Err(NotCertified::NotDriven(taken.to_string()));
     }
     let other = |node: &Expr| NotCertified::NotDriven(node.to_string());
     expression.fold(|node, children: &[Expr]| match node.node() {
-        Node::Function(Function::Sin | Function::Cos, _) if children.iter().any(|child| child.contains(time)) => {
+        Node::Function(Function::Sin | Function::Cos, _)
+            if children.iter().any(|child| child.contains(time)) =>
+        {
             let argument = children[0].expand()?;
             let rate = argument.differentiate(time)?.expand()?;
             let times = rate
@@ -53,11 +61,13 @@ pub(super) fn in_waves(expression: &Expr, time: Symbol, frequency: &Rational) ->
             let [cosine, sine] = multiple(own, times).ok_or_else(|| other(node))?;
             // cos(k Omega t + b) and sin of the same, b all the rest.
             let rest = argument.substitute(time, &Expr::zero())?;
-            let [cosine_of_rest, sine_of_rest] =
-                [Function::Cos, Function::Sin].map(|function| Expr::function(function, vec![rest.clone()]));
+            let [cosine_of_rest, sine_of_rest] = [Function::Cos, Function::Sin]
+                .map(|function| Expr::function(function, vec![rest.clone()]));
             let (cosine_of_rest, sine_of_rest) = (cosine_of_rest?, sine_of_rest?);
             Ok(match node.node() {
-                Node::Function(Function::Cos, _) => &(&cosine * &cosine_of_rest) - &(&sine * &sine_of_rest),
+                Node::Function(Function::Cos, _) => {
+                    &(&cosine * &cosine_of_rest) - &(&sine * &sine_of_rest)
+                }
                 _ => &(&sine * &cosine_of_rest) + &(&cosine * &sine_of_rest),
             })
         }

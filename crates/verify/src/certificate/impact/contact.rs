@@ -1,6 +1,7 @@
 //! How deep and how long an elastic contact is, enclosed.
 //!
-//! Between the touch with the speed v and the deepest point the energy is kept. With the depth d = q^2 every function is analytic:
+//! Between the touch with the speed v and the deepest point the energy is kept. With the depth d =
+//! q^2 every function is analytic:
 //!
 //! ```text
 //! (d')^2 = G(q) = v^2 - 2 (cos xc - cos(xc + q^2)) - (4/5) gamma q^5,     G(qm) = 0
@@ -9,13 +10,16 @@
 //! T = 8 sqrt(qm) int_0^1 q/sqrt(H(q)) dw,     q = qm (1 - w^2)
 //! ```
 //!
-//! Until xc + q^2 = pi/2 the slope of G changes its sign at most once, from plus to minus: then qm is the only root, and two signs
-//! enclose it. The integral is taken piece by piece by the Taylor series of the integrand about the middle; what is left is at most
-//! the next coefficient over the whole piece (Corliss and Rall).
+//! Until xc + q^2 = pi/2 the slope of G changes its sign at most once, from plus to minus: then qm
+//! is the only root, and two signs enclose it. The integral is taken piece by piece by the Taylor
+//! series of the integrand about the middle; what is left is at most the next coefficient over the
+//! whole piece (Corliss and Rall).
 //!
-//! In: the place of the barrier, its stiffness, the speed. Out: depth and duration as balls. A piece costs three products of series.
+//! In: the place of the barrier, its stiffness, the speed. Out: depth and duration as balls. A
+//! piece costs three products of series.
 //!
-//! Source: G. F. Corliss, L. B. Rall: Adaptive, self-validating numerical quadrature, SIAM J. Sci. Stat. Comput. 8 (1987), 831-847.
+//! Source: G. F. Corliss, L. B. Rall: Adaptive, self-validating numerical quadrature, SIAM J. Sci.
+//! Stat. Comput. 8 (1987), 831-847.
 
 use num_traits::Signed as _;
 
@@ -126,13 +130,18 @@ impl Contact {
         const FIRST: u32 = 5;
         const SMALLEST: u32 = 12;
         // Middles and halves of the pieces, in units of 2^-halvings.
-        let mut pieces: Vec<(u32, u64)> = (0..1 << (FIRST - 1)).map(|piece| (FIRST, 2 * piece + 1)).collect();
+        let mut pieces: Vec<(u32, u64)> = (0..1 << (FIRST - 1))
+            .map(|piece| (FIRST, 2 * piece + 1))
+            .collect();
         let mut integral = Ball::zero();
         while let Some((halvings, middle)) = pieces.pop() {
             match self.piece(qm, halvings, middle) {
                 Some(part) => integral = sum(&integral, &part),
                 None if halvings < SMALLEST => {
-                    pieces.extend([(halvings + 1, 2 * middle - 1), (halvings + 1, 2 * middle + 1)]);
+                    pieces.extend([
+                        (halvings + 1, 2 * middle - 1),
+                        (halvings + 1, 2 * middle + 1),
+                    ]);
                 }
                 None => return Err(NotEnclosed::Digits),
             }
@@ -141,7 +150,8 @@ impl Contact {
         Ok(WORKING.scaled(&product(&root, &integral), 8))
     }
 
-    /// The integral over `middle +- 1` in units of `2^-halvings`; `None` where too much is left of its series.
+    /// The integral over `middle +- 1` in units of `2^-halvings`; `None` where too much is left of
+    /// its series.
     fn piece(&self, qm: &Ball, halvings: u32, middle: u64) -> Option<Ball> {
         let half = WORKING.dyadic(&Integer::from(1), halvings as usize);
         let centre = WORKING.scaled(&half, i64::try_from(middle).ok()?);
@@ -160,7 +170,10 @@ impl Contact {
             .zip(self.integrand(qm, &centre, &half)?.iter().take(ORDER))
             .step_by(2)
         {
-            integral = sum(&integral, &WORKING.divided(&WORKING.scaled(coefficient, 2), k + 1));
+            integral = sum(
+                &integral,
+                &WORKING.divided(&WORKING.scaled(coefficient, 2), k + 1),
+            );
         }
         integral.radius += left;
         Some(product(&integral, &half))
@@ -174,9 +187,14 @@ impl Contact {
             WORKING.scaled(&product(w, half), -2),
             WORKING.scaled(&product(half, half), -1),
         ];
-        let q: Vec<Ball> = shape.iter().map(|coefficient| product(qm, coefficient)).collect();
+        let q: Vec<Ball> = shape
+            .iter()
+            .map(|coefficient| product(qm, coefficient))
+            .collect();
         let (square, deepest) = (multiplied(&q, &q), product(qm, qm));
-        let half = |series: Vec<Ball>| -> Vec<Ball> { series.iter().map(|ball| WORKING.divided(ball, 2)).collect() };
+        let half = |series: Vec<Ball>| -> Vec<Ball> {
+            series.iter().map(|ball| WORKING.divided(ball, 2)).collect()
+        };
         let negative = square.iter().map(|ball| WORKING.scaled(ball, -1)).collect();
         let y = half(shifted(negative, &deepest));
         let mean = half(shifted(square, &deepest));
@@ -234,7 +252,9 @@ fn added(left: Vec<Ball>, right: &[Ball]) -> Vec<Ball> {
     let count = left.len().max(right.len());
     let zero = Ball::zero();
     let term = |series: &[Ball], k: usize| series.get(k).unwrap_or(&zero).clone();
-    (0..count).map(|k| sum(&term(&left, k), &term(right, k))).collect()
+    (0..count)
+        .map(|k| sum(&term(&left, k), &term(right, k)))
+        .collect()
 }
 
 /// The product up to the power [`ORDER`].
@@ -249,15 +269,18 @@ fn multiplied(left: &[Ball], right: &[Ball]) -> Vec<Ball> {
     terms
 }
 
-/// `sum_k (-1)^k y^(2 k)/(2 k + p)!`: the cosine for p = 0, `sin(y)/y` for p = 1. In the circle of radius 1 about zero `|y|` is at most
-/// `largest`, so that by Cauchy what is left out has no coefficient beyond its own size there.
+/// `sum_k (-1)^k y^(2 k)/(2 k + p)!`: the cosine for p = 0, `sin(y)/y` for p = 1. In the circle of
+/// radius 1 about zero `|y|` is at most `largest`, so that by Cauchy what is left out has no
+/// coefficient beyond its own size there.
 fn even_function(y: &[Ball], p: u32, largest: Bound) -> Option<Vec<Ball>> {
     const MOST: u32 = 200;
     let square = multiplied(y, y);
     let size = largest * largest;
     // Of a ratio below 1/2 from here on: what is left out is less than twice its first term.
     let (mut count, mut term) = (0, Bound::exactly(1.0));
-    while !(term <= Bound::power_of_two(-215) && size <= Bound::exactly(f64::from(2 * count * count))) {
+    while !(term <= Bound::power_of_two(-215)
+        && size <= Bound::exactly(f64::from(2 * count * count)))
+    {
         count += 1;
         term = term * size / ((2 * count + p) * (2 * count + p - 1));
         if count > MOST {
@@ -288,7 +311,10 @@ fn inverse_root(series: &[Ball]) -> Option<Vec<Ball>> {
         let mut total = Ball::zero();
         for k in 1..=n.min(series.len() - 1) {
             let factor = i64::try_from(k).ok()? - 2 * i64::try_from(n).ok()?;
-            total = sum(&total, &WORKING.scaled(&product(&series[k], &terms[n - k]), factor));
+            total = sum(
+                &total,
+                &WORKING.scaled(&product(&series[k], &terms[n - k]), factor),
+            );
         }
         let total = WORKING.divided(&total, u32::try_from(2 * n).ok()?);
         terms.push(WORKING.quotient(&total, first)?);
@@ -335,7 +361,8 @@ mod tests {
         }
     }
 
-    /// The root of a series, squared and multiplied by it, is one; a wide first coefficient has the roots of all its numbers.
+    /// The root of a series, squared and multiplied by it, is one; a wide first coefficient has the
+    /// roots of all its numbers.
     #[test]
     fn the_inverse_root_of_a_series_undoes_it() {
         let series = [ball(9, 4), ball(1, 3), ball(-1, 5), ball(2, 7)];
@@ -344,7 +371,10 @@ mod tests {
         assert_eq!(one.len(), ORDER + 1);
         for (k, coefficient) in one.iter().enumerate() {
             assert!(
-                holds(coefficient, &Rational::from_integer(i64::from(k == 0).into())),
+                holds(
+                    coefficient,
+                    &Rational::from_integer(i64::from(k == 0).into())
+                ),
                 "{k}"
             );
         }
@@ -355,9 +385,15 @@ mod tests {
         let root = inverse_root(&[wide.clone(), ball(1, 3)]).expect("a root");
         for number in [2.0_f64, 2.25, 2.5] {
             // The coefficients of (c + u/3)^(-1/2).
-            let exact = [number.powf(-0.5), -number.powf(-1.5) / 6.0, number.powf(-2.5) / 24.0];
+            let exact = [
+                number.powf(-0.5),
+                -number.powf(-1.5) / 6.0,
+                number.powf(-2.5) / 24.0,
+            ];
             for (ball, exact) in root.iter().zip(exact) {
-                assert!((to_f64(&WORKING.middle(ball)) - exact).abs() <= ball.radius.value() + 1e-15);
+                assert!(
+                    (to_f64(&WORKING.middle(ball)) - exact).abs() <= ball.radius.value() + 1e-15
+                );
             }
         }
         assert!(
@@ -369,7 +405,8 @@ mod tests {
         );
     }
 
-    /// What is left out of the series of a function is in the radii: fewer terms have wider ones, and all contain the function.
+    /// What is left out of the series of a function is in the radii: fewer terms have wider ones,
+    /// and all contain the function.
     #[test]
     fn a_function_of_a_series_holds_what_was_left_out() {
         let y = [ball(1, 3), ball(1, 2)];

@@ -6,10 +6,12 @@
 //! max(x, y, z)^(-1/2) <= R_F(x, y, z) <= min(x, y, z)^(-1/2)
 //! ```
 //!
-//! In: balls. Out: a ball that contains the integral of all numbers in them. Each step brings the three four times nearer to each other, so that
-//! half as many steps as there are binary digits leave nothing between the two ends.
+//! In: balls. Out: a ball that contains the integral of all numbers in them. Each step brings the
+//! three four times nearer to each other, so that half as many steps as there are binary digits
+//! leave nothing between the two ends.
 //!
-//! Source: B. C. Carlson: Numerical computation of real or complex elliptic integrals, Numerical Algorithms 10 (1995), 13-26.
+//! Source: B. C. Carlson: Numerical computation of real or complex elliptic integrals, Numerical
+//! Algorithms 10 (1995), 13-26.
 
 use crate::certificate::fourier_series::WORKING;
 use crate::exact::ball::Ball;
@@ -28,7 +30,9 @@ pub(super) fn carlson(x: &Ball, y: &Ball, z: &Ball) -> Option<Ball> {
             WORKING.product(&b, &c),
             WORKING.product(&c, &a),
         ];
-        let shift = products.iter().fold(Ball::zero(), |sum, term| WORKING.sum(&sum, term));
+        let shift = products
+            .iter()
+            .fold(Ball::zero(), |sum, term| WORKING.sum(&sum, term));
         numbers = numbers.map(|number| WORKING.divided(&WORKING.sum(&number, &shift), 4));
     }
     let [x, mut y, z] = numbers;

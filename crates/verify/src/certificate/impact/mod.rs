@@ -1,4 +1,5 @@
-//! The paper's impact, enclosed: a pendulum from rest against an elastic barrier, equation (9), its three phases in numbers that are proved.
+//! The paper's impact, enclosed: a pendulum from rest against an elastic barrier, equation (9), its
+//! three phases in numbers that are proved.
 //!
 //! ```text
 //! x'' + sin x + gamma (x - xc)^(3/2) H(x - xc) = 0,     x(0) = -A,  x'(0) = 0
@@ -7,11 +8,13 @@
 //! T = 2 t1 + (duration of the contact)
 //! ```
 //!
-//! The force is not analytic where the contact begins, so that the cosine series of a whole period prove nothing; in each phase the
-//! energy is kept, and what it leaves are two integrals (`elliptic.rs`, `contact.rs`). In: numbers as fractions. Out: every number
-//! that is asked of an impact, with the distance that it may be off. Some 0.1 s.
+//! The force is not analytic where the contact begins, so that the cosine series of a whole period
+//! prove nothing; in each phase the energy is kept, and what it leaves are two integrals
+//! (`elliptic.rs`, `contact.rs`). In: numbers as fractions. Out: every number that is asked of an
+//! impact, with the distance that it may be off. Some 0.1 s.
 //!
-//! Source: equation (9) of the paper; for enclosures phase by phase see W. Tucker: Validated Numerics, Princeton (2011).
+//! Source: equation (9) of the paper; for enclosures phase by phase see W. Tucker: Validated
+//! Numerics, Princeton (2011).
 
 mod contact;
 mod elliptic;
@@ -67,14 +70,17 @@ pub enum NotEnclosed {
     #[error("the stiffness gamma must be positive")]
     Stiffness,
     /// The depth goes beyond where it is known to be the only one.
-    #[error("the contact goes on beyond the horizontal, x = pi/2: its deepest point is not proved to be the only one")]
+    #[error(
+        "the contact goes on beyond the horizontal, x = pi/2: its deepest point is not proved to be the only one"
+    )]
     Deep,
     /// The digits do not suffice.
     #[error("the digits do not suffice: gamma is too small or too large for a proof")]
     Digits,
 }
 
-/// Encloses the impact of a pendulum that is released from rest at `-amplitude` towards a barrier at `barrier`, on its right.
+/// Encloses the impact of a pendulum that is released from rest at `-amplitude` towards a barrier
+/// at `barrier`, on its right.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -136,7 +142,9 @@ fn flight(amplitude: &Rational, place: &Rational) -> Option<Ball> {
     let half = Rational::new(1.into(), 2.into());
     let waves = |angle: &Rational| sine_and_cosine(&WORKING.fraction(&(angle * &half)));
     let ([modulus, cosine], [sine, cosine_there]) = (waves(amplitude)?, waves(place)?);
-    let (one, squared) = (WORKING.integer(1), |ball: &Ball| WORKING.product(ball, ball));
+    let (one, squared) = (WORKING.integer(1), |ball: &Ball| {
+        WORKING.product(ball, ball)
+    });
     let quarter = elliptic::carlson(&Ball::zero(), &squared(&cosine), &one)?;
     let sine = WORKING.quotient(&sine, &modulus)?;
     let rest = WORKING.difference(&one, &squared(&sine));
